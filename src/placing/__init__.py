@@ -1,0 +1,1 @@
+"""Robotic placement of objects by hallucinating the people who will use them."""

@@ -1,0 +1,22 @@
+"""Errors a user can cause: each is one line that names thing, value and expectation."""
+
+
+class PlacingError(Exception):
+    """Something a user gave is wrong; the message is one complete line."""
+
+
+class BadInput(PlacingError):
+    """A file, a field or a value given by a user is not what is expected."""
+
+
+class BadArtifact(PlacingError):
+    """A file that a stage wrote is missing, damaged or of another shape."""
+
+
+class UnknownName(PlacingError):
+    """A scene, category, method or kind does not exist; the message lists what does."""
+
+
+def unknown(what: str, name: str, known: list[str]) -> UnknownName:
+    """Return the error for `name`, which is none of the `known` ones."""
+    return UnknownName(f"unknown {what} {name!r}; known are {', '.join(sorted(known))}")

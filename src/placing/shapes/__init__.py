@@ -1,0 +1,1 @@
+"""Parametric meshes of furniture, objects and buildings, and what they can hold."""
