@@ -1,0 +1,130 @@
+"""Placement candidates: where an object could be put down in a scene.
+
+Places on a lattice over every placing area, each with the features that the later
+stages use; headings come from a fixed set. Which places fit an object is decided per
+object from its size and from the objects that already stand there.
+
+Shapes: p places, n objects.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+from shapely import LinearRing, distance, points
+
+from placing.areas import PIN_RADIUS_M
+from placing.columns import free_heights, sort_columns
+from placing.human import lattice
+from placing.ply import Cloud
+from placing.scene import PlacingArea, SceneObject
+
+Array = NDArray[np.float64]
+
+OPEN_M = 9.0
+"""Free height of a place with nothing above it."""
+FEATURES = ("height_m", "clearance_m", "edge_distance_m", "wall_distance_m")
+
+
+@dataclass(frozen=True)
+class CandidatesConfig:
+    """Which places are tried; the values live in `config/config.yaml`."""
+
+    spacing_m: float
+    """Lattice of the places."""
+    n_headings: int
+    min_overlap: float
+    """Share of an object's shorter half-width that must lie inside the area's edge."""
+    wall_cell_m: float
+    """Grid on which the distance to the walls is measured."""
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """The places of a scene, ordered by area, then x, then y."""
+
+    location: Array
+    """(p, 3) points on the placing areas [m]."""
+    area: NDArray[np.int32]
+    """(p,) index of the placing area."""
+    features: Array
+    """(p, f) one column per name of `FEATURES`."""
+
+    def feature(self, name: str) -> Array:
+        """Return one feature, shape (p,)."""
+        return self.features[:, FEATURES.index(name)]
+
+
+def find_candidates(
+    cloud: Cloud, areas: tuple[PlacingArea, ...], config: CandidatesConfig
+) -> Candidates:
+    """Return the places on all placing areas of a scene."""
+    wall_distance = _wall_distance(cloud.points, config.wall_cell_m)
+    blocks, edges = [np.empty((0, 4))], [np.empty(0)]
+    for number, area in enumerate(areas):
+        xy = lattice(area.polygon_m, config.spacing_m)  # (p, 2)
+        rest = np.tile([area.height_m, number], (len(xy), 1))
+        blocks.append(np.column_stack([xy, rest]))
+        edges.append(distance(LinearRing(area.polygon_m), points(xy)))
+    table = np.concatenate(blocks)  # (p, 4)
+    xy, height = table[:, :2], table[:, 2]
+    columns = sort_columns(cloud, 2 * PIN_RADIUS_M)
+    clearance = np.minimum(free_heights(columns, xy, height, PIN_RADIUS_M), OPEN_M)
+    features = [height, clearance, np.concatenate(edges), wall_distance(xy)]
+    area = table[:, 3].astype(np.int32)
+    return Candidates(table[:, :3], area, np.column_stack(features))
+
+
+def fits(
+    candidates: Candidates, item: SceneObject, min_overlap: float
+) -> NDArray[np.bool_]:
+    """Return at which places the object fits below what is above and on the area."""
+    # ASSUME: an object may overhang the edge of its area by a part of its own width;
+    # whether it then stands is a matter of stability (Section 3.1).
+    half_width = min(item.size_m[:2]) / 2
+    is_on_area = candidates.feature("edge_distance_m") >= min_overlap * half_width
+    return is_on_area & (candidates.feature("clearance_m") >= item.size_m[2])
+
+
+def is_unoccupied(
+    candidates: Candidates, item: SceneObject, boxes: Array
+) -> NDArray[np.bool_]:
+    """Return at which places the object is clear of objects that stand there already.
+
+    `boxes` (n, 7) = centre, size and yaw of the given objects.
+    """
+    free = np.ones(len(candidates.location), np.bool_)
+    reach = min(item.size_m[:2]) / 2
+    z = candidates.location[:, 2]
+    for box in boxes:
+        offset = candidates.location[:, :2] - box[:2]
+        cos, sin = np.cos(box[6]), np.sin(box[6])
+        along, across = (offset @ np.array([[cos, -sin], [sin, cos]])).T
+        is_beside = np.abs(along) >= box[3] / 2 + reach
+        is_beside |= np.abs(across) >= box[4] / 2 + reach
+        is_above = z >= box[2] + box[5] / 2
+        is_below = z + item.size_m[2] <= box[2] - box[5] / 2
+        free &= is_beside | is_above | is_below
+    return free
+
+
+def _wall_distance(
+    cloud_points: NDArray[np.floating], cell_m: float
+) -> Callable[[Array], Array]:
+    """Return a function from places (p, 2) to their distance to the walls (p,).
+
+    What the cloud covers, seen from above and with its holes filled, is the inside.
+    """
+    origin = cloud_points[:, :2].min(0) - cell_m
+    cells = ((cloud_points[:, :2] - origin) / cell_m).astype(np.int64)
+    covered = np.zeros(cells.max(0) + 3, np.bool_)
+    covered[tuple(cells.T)] = True
+    inside = ndimage.binary_fill_holes(ndimage.binary_closing(covered, iterations=2))
+    to_wall = ndimage.distance_transform_edt(inside) * cell_m
+
+    def distance_of(xy: Array) -> Array:
+        return to_wall[tuple(((xy - origin) / cell_m).astype(np.int64).T)]
+
+    return distance_of

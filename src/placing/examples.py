@@ -1,0 +1,58 @@
+"""What the learners see of a training scene: labelled objects, poses and places."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from placing import rigid
+from placing.baselines import FEATURES_OF
+from placing.candidates import Candidates
+from placing.human import HumanPoses
+from placing.learning import Example
+from placing.scene import Scene, resting_point
+
+Array = NDArray[np.float64]
+
+
+def examples_of(scene: Scene, poses: HumanPoses) -> list[Example]:
+    """Return one example per labelled arrangement of a scene."""
+    items = {item.object_id: item for item in scene.objects}
+    references = poses.references()
+    examples = []
+    for arrangement in scene.arrangements:
+        placed = [items[p.object_id] for p in arrangement.placements]
+        locations = np.array([p.location for p in arrangement.placements])
+        yaw = rigid.yaw_of(np.array([p.orientation for p in arrangement.placements]))
+        examples.append(
+            Example(
+                scene=scene.scene,
+                categories=tuple(item.category for item in placed),
+                objects=np.column_stack([locations, yaw]),
+                has_front=np.array([item.has_front for item in placed]),
+                references=references,
+                prior=poses.prior,
+            )
+        )
+    return examples
+
+
+def baseline_values(
+    training: Sequence[tuple[Scene, Candidates]], method: str
+) -> dict[str, Array]:
+    """Return the features of a baseline where labelled objects rest, by category.
+
+    The features are those of the place nearest to the object, (n, f) per category.
+    """
+    values: dict[str, list[Array]] = {}
+    for scene, candidates in training:
+        items = {item.object_id: item for item in scene.objects}
+        columns = [candidates.feature(name) for name in FEATURES_OF[method]]
+        table = np.column_stack(columns)
+        for arrangement in scene.arrangements:
+            for placement in arrangement.placements:
+                item = items[placement.object_id]
+                offset = candidates.location - resting_point(item, placement)
+                nearest = int(np.argmin((offset**2).sum(1)))
+                values.setdefault(item.category, []).append(table[nearest])
+    return {name: np.array(values[name]) for name in sorted(values)}

@@ -1,0 +1,46 @@
+"""Scan the scenes of a fold and clean their clouds."""
+
+import logging
+from pathlib import Path
+from typing import Literal
+
+from command import run
+from placing.artifacts import write_scene
+from placing.cloud import CloudConfig, preprocess, sample_cloud
+from placing.dressing import meshes_of
+from placing.layouts import layout_reader
+from placing.ply import write_ply
+from placing.scene import Scene
+from placing.seeds import generator
+from tqdm import tqdm
+
+log = logging.getLogger(__name__)
+
+
+def main(
+    dataset: Literal["rooms", "thor"],
+    scenes: tuple[str, ...],
+    rooms: Path,
+    schema: Path,
+    catalogue: Path,
+    types: Path,
+    clouds: Path,
+    seed: int,
+    spacing_m: float,
+    cloud: CloudConfig,
+) -> None:
+    """Scan the scenes of a fold and clean their clouds."""
+    read = layout_reader(dataset, rooms, schema, catalogue, types)
+    for scene in tqdm(scenes, unit="scene", disable=None):
+        layout = read(scene)
+        rng = generator(seed, "preprocess_cloud", dataset, scene)
+        scanned = sample_cloud(rng, list(meshes_of(layout).values()), spacing_m)
+        clean = preprocess(scanned, cloud)
+        write_ply(clouds / f"{scene}.ply", clean)
+        bare = Scene(scene, layout.kind, (), layout.objects, layout.arrangements)
+        write_scene(clouds / f"{scene}.json", bare)
+        log.info("%s: %d points", scene, len(clean))
+
+
+if __name__ == "__main__":
+    run(main)
