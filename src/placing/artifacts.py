@@ -105,7 +105,8 @@ def _theta(path: Path, category: str, values: dict[str, Any]) -> Theta:
     """Return the Theta of a category after checking every value."""
     for field in fields(Theta):
         value = values.get(field.name)
-        if not isinstance(value, int | float) or not np.isfinite(value):
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        if not is_number or not np.isfinite(value):
             place = f"{path}: categories.{category}.{field.name}"
             raise BadArtifact(f"{place}: value {value!r}; expected a finite number")
     return Theta(**{field.name: values[field.name] for field in fields(Theta)})

@@ -119,9 +119,8 @@ def _occupancy(
     origin = np.floor(points.min(0).astype(float) / voxel_m) * voxel_m
     origin[2] = 0.0
     cells = np.floor((points - origin) / voxel_m + 1e-6).astype(np.int64)
+    is_occupied = np.zeros(np.maximum(cells.max(0) + 1, 1), np.bool_)
     cells = cells[cells[:, 2] > 0]
-    shape = np.floor((points.max(0) - origin) / voxel_m).astype(np.int64) + 1
-    is_occupied = np.zeros(np.maximum(shape, 1), np.bool_)
     is_occupied[tuple(cells.T)] = True
     return origin, is_occupied
 
