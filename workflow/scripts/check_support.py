@@ -1,0 +1,47 @@
+"""Check that what designers put into their rooms rests on a found placing area."""
+
+from dataclasses import asdict
+from pathlib import Path
+
+import pandas as pd
+from shapely import Polygon
+
+from command import run
+from placing.artifacts import read_scene
+from placing.atomic import replacing
+from placing.scene import Scene
+from placing.thor import read_layout
+from placing.thor_data import find_data, read_data
+from placing.thor_support import Patch, check_layout
+from placing.thor_types import read_types
+
+
+def main(scenes: tuple[Path, ...], types: Path, support: Path) -> None:
+    """Write one line for each object of the designers' rooms.
+
+    Args:
+        scenes: Directories with the scenes of all folds.
+        types: Table of what becomes of each type of thing.
+        support: Table to write: what is below each object.
+    """
+    data, kinds = read_data(find_data()), read_types(types)
+    rows = []
+    for path in sorted(path for folder in scenes for path in folder.glob("*.json")):
+        scene = read_scene(path)
+        layout = read_layout(data, scene.scene, kinds)
+        checks = check_layout(layout, patches_of(scene))
+        rows += [{"scene": scene.scene, **asdict(check)} for check in checks]
+    columns = {"object_id": "object", "below": "parent_type"}
+    table = pd.DataFrame(rows).rename(columns=columns)
+    table["parent_type"] = table["parent_type"].str.replace(r"\d.*", "", regex=True)
+    with replacing(support) as part:
+        table.to_csv(part, index=False, float_format="%.4f")
+
+
+def patches_of(scene: Scene) -> list[Patch]:
+    """Return the placing areas of a scene as outlines and heights."""
+    return [(Polygon(area.polygon_m), area.height_m) for area in scene.areas]
+
+
+if __name__ == "__main__":
+    run(main)
