@@ -46,8 +46,10 @@ HIP_ABOVE_SEAT_M = 0.07
 # ASSUME: thinner than a real body by about 2 cm, so that touching a seat, its back or
 # the floor is no collision; one radius per joint, linear along a bone.
 RADIUS_M = np.array(
-    [0.10, 0.07, 0.12, 0.06, 0.06, 0.045, 0.045, 0.04, 0.04]
-    + [0.05, 0.05, 0.05, 0.05, 0.04, 0.04]
+    [
+        *(0.10, 0.07, 0.12, 0.06, 0.06, 0.045, 0.045, 0.04, 0.04),
+        *(0.05, 0.05, 0.05, 0.05, 0.04, 0.04),
+    ]
 )
 SPHERES_PER_BONE = 5
 LOWEST_ON_SHANK = 0.85
