@@ -19,8 +19,8 @@ from placing.arranging import ArrangingConfig, UseOfObject
 from placing.baselines import BaselinesConfig, chance_density, histogram_density
 from placing.candidates import Candidates, CandidatesConfig, fits, is_unoccupied
 from placing.decision import DecisionConfig, Smoother, choose_places
+from placing.fitting import BROAD
 from placing.human import HumanPoses, headings
-from placing.learning import BROAD
 from placing.potential import Theta, log_psi_human
 from placing.scene import Placement, Scene, SceneObject, extents
 from placing.tasks import Question

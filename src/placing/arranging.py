@@ -118,7 +118,7 @@ def _n_headings(yaw: Array) -> int:
 
 
 @njit(cache=True)
-def _add_up(table, height, cells, level, pose_cells, heading, reference):  # noqa: ANN001, ANN202, PLR0913
+def _add_up(table, height, cells, level, pose_cells, heading, reference):  # noqa: ANN001, ANN202
     """Return the sum of Psi_loc over the places for every pose, shape (q,)."""
     width = table.shape[1]
     half = width // 2
@@ -134,7 +134,7 @@ def _add_up(table, height, cells, level, pose_cells, heading, reference):  # noq
 
 
 @njit(cache=True)
-def _spread(table, height, cells, level, pose_cells, heading, reference, weight):  # noqa: ANN001, ANN202, PLR0913
+def _spread(table, height, cells, level, pose_cells, heading, reference, weight):  # noqa: ANN001, ANN202
     """Return the sum of weighted Psi_loc over the poses for every place, shape (p,)."""
     width = table.shape[1]
     half = width // 2

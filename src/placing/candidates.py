@@ -13,12 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
-from shapely import LinearRing, distance, points
+from shapely import distance, points
 
-from placing.areas import PIN_RADIUS_M
-from placing.columns import free_heights, sort_columns
+from placing.areas.columns import free_heights, sort_columns
+from placing.areas.finder import PIN_RADIUS_M
+from placing.areas.outlines import heal
+from placing.clouds.ply import Cloud
 from placing.human import lattice
-from placing.ply import Cloud
 from placing.scene import PlacingArea, SceneObject
 
 Array = NDArray[np.float64]
@@ -62,12 +63,14 @@ def find_candidates(
 ) -> Candidates:
     """Return the places on all placing areas of a scene."""
     wall_distance = _wall_distance(cloud.points, config.wall_cell_m)
-    blocks, edges = [np.empty((0, 4))], [np.empty(0)]
+    blocks: list[Array] = [np.empty((0, 4))]
+    edges: list[Array] = [np.empty(0)]
     for number, area in enumerate(areas):
         xy = lattice(area.polygon_m, config.spacing_m)  # (p, 2)
         rest = np.tile([area.height_m, number], (len(xy), 1))
         blocks.append(np.column_stack([xy, rest]))
-        edges.append(distance(LinearRing(area.polygon_m), points(xy)))
+        edge = distance(heal(area.polygon_m).boundary, points(xy))
+        edges.append(np.asarray(edge))
     table = np.concatenate(blocks)  # (p, 4)
     xy, height = table[:, :2], table[:, 2]
     columns = sort_columns(cloud, 2 * PIN_RADIUS_M)

@@ -91,7 +91,7 @@ def sample(
 
 
 @njit(cache=True)
-def _run(rng, rows, cumulated, prior, alpha, m, choices, poses, log_joint):  # noqa: ANN001, ANN202, PLR0913
+def _run(rng, rows, cumulated, prior, alpha, m, choices, poses, log_joint):  # noqa: ANN001, ANN202
     """Fill `choices`, `poses` and `log_joint` sweep by sweep."""
     n = len(rows)
     choice = np.zeros(n, np.int64)
@@ -120,7 +120,7 @@ def _draw(rng, cumulated):  # noqa: ANN001, ANN202
 
 
 @njit(cache=True)
-def _choose_pose(rng, rows, cumulated, alpha, m, i, choice, pose_of, n_members):  # noqa: ANN001, ANN202, PLR0913
+def _choose_pose(rng, rows, cumulated, alpha, m, i, choice, pose_of, n_members):  # noqa: ANN001, ANN202
     """Redraw the pose object `i` picks, given all else (Neal 2000, eq. 3.6)."""
     n = len(choice)
     old = choice[i]
@@ -147,7 +147,7 @@ def _choose_pose(rng, rows, cumulated, alpha, m, i, choice, pose_of, n_members):
 
 
 @njit(cache=True)
-def _redraw_pose(rng, rows, prior, k, choice, buffer):  # noqa: ANN001, ANN202, PLR0913
+def _redraw_pose(rng, rows, prior, k, choice, buffer):  # noqa: ANN001, ANN202
     """Return a pose drawn in proportion to P0 times the rows of its objects."""
     buffer[:] = prior
     for i in range(len(choice)):
@@ -161,7 +161,7 @@ def _redraw_pose(rng, rows, prior, k, choice, buffer):  # noqa: ANN001, ANN202, 
 
 
 @njit(cache=True)
-def _log_joint(rows, prior, alpha, choice, pose_of, n_members):  # noqa: ANN001, ANN202, PLR0913
+def _log_joint(rows, prior, alpha, choice, pose_of, n_members):  # noqa: ANN001, ANN202
     """Return log [prod alpha (n_k - 1)! P0(H_k) prod Psi(O_i, H_choice)]."""
     total = 0.0
     for k in range(len(n_members)):

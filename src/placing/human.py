@@ -21,6 +21,9 @@ from placing.scene import PlacingArea
 
 Array = NDArray[np.float64]
 
+MAX_STEP_M = 0.05
+"""What is lower than this belongs to the floor: people stand on rugs."""
+
 
 @dataclass(frozen=True)
 class PosesConfig:
@@ -81,7 +84,7 @@ def valid_poses(
 
 def headings(n_headings: int) -> Array:
     """Return the headings that poses and placements may take, shape (n_headings,)."""
-    return np.arange(n_headings) * (2 * np.pi / n_headings)
+    return np.linspace(0, 2 * np.pi, n_headings, endpoint=False)
 
 
 def lattice(polygon_m: Array, spacing_m: float) -> Array:
@@ -103,7 +106,8 @@ def _places(
         seats = (config.min_seat_m, config.max_seat_m)
         used = [a for a in areas if seats[0] <= a.height_m <= seats[1]]
     else:
-        spacing, used = config.standing_spacing_m, [a for a in areas if a.is_floor]
+        spacing = config.standing_spacing_m
+        used = [a for a in areas if a.is_floor or a.height_m < MAX_STEP_M]
     grids = [(lattice(area.polygon_m, spacing), area.height_m) for area in used]
     places = [np.column_stack([xy, np.full(len(xy), z)]) for xy, z in grids]
     return np.concatenate([np.empty((0, 3)), *places]), spacing**2

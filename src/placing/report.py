@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from placing.atomic import replacing
+from placing.artifacts.atomic import replacing
 
 DATA = {
     "rooms": "Data set `rooms`: 20 rooms, 47 objects and their arrangements, written "
@@ -20,7 +20,7 @@ ORDER = (
     *("chance", "height", "room", "area", "random_human"),
     *("object", "fmm", "dp", "dp_object", "labels"),
 )
-"""Methods in the order of the paper's Figure 6; `labels` is the spread of the labels."""
+"""Methods in the order of the paper's Figure 6; `labels` is the labels' spread."""
 NOTE = (
     "Location is the horizontal error, height the vertical one, both in metres, mean "
     "± standard error over scenes; `nll` is the negative log of the density that a "
@@ -74,7 +74,8 @@ def _averages(figure6: pd.DataFrame, paper: pd.DataFrame) -> str:
         lines.append(f"| {' | '.join(cells)} |")
     said = paper[paper["category"] == "AVG"].set_index("metric")["value"]
     location, height = f"within {said['location_m']}", f"about {said['height_m']}"
-    lines.append(f"| *paper, human context (its data)* | {location} | – | {height} | – | – |")
+    cells = ["*paper, human context (its data)*", location, "–", height, "–", "–"]
+    lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines)
 
 

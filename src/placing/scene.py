@@ -74,7 +74,7 @@ class Placement:
 
     object_id: str
     area: str
-    """Placing area; in a `Layout`, the furniture or object below; `floor` for the floor."""
+    """Placing area; in a `Layout`, the furniture or object below, or `floor`."""
     location: Array
     """(3,) centre of the object's bounding box in the world [m]."""
     orientation: Array
@@ -114,7 +114,7 @@ class PlacingArea:
     """A horizontal patch of the cloud on which objects can stand (E_j)."""
 
     area: str
-    """`floor`, or `area` and a number: names of areas found in the cloud say nothing."""
+    """`floor`, or `area` and a number: the cloud knows no names."""
     polygon_m: Array
     """(v, 2) corners in the world, counter-clockwise."""
     height_m: float
@@ -168,8 +168,9 @@ def with_areas(scene: Scene, areas: tuple[PlacingArea, ...]) -> Scene:
         ]
         return min(below)[1] if below else ""
 
-    arrangements = tuple(
-        replace(a, placements=tuple(replace(p, area=area_below(p)) for p in a.placements))
-        for a in scene.arrangements
-    )
+    def on_areas(arrangement: Arrangement) -> Arrangement:
+        placed = tuple(replace(p, area=area_below(p)) for p in arrangement.placements)
+        return replace(arrangement, placements=placed)
+
+    arrangements = tuple(on_areas(arrangement) for arrangement in scene.arrangements)
     return replace(scene, areas=areas, arrangements=arrangements)

@@ -7,10 +7,10 @@ from placing.answering import Settings
 from placing.arranging import ArrangingConfig
 from placing.baselines import BaselinesConfig
 from placing.candidates import Candidates, CandidatesConfig, find_candidates
+from placing.clouds.ply import Cloud
 from placing.decision import DecisionConfig
 from placing.dpmm import DpmmConfig
 from placing.human import HumanPoses, PosesConfig, valid_poses
-from placing.ply import Cloud
 from placing.scene import Arrangement, Placement, PlacingArea, Scene, SceneObject
 
 SETTINGS = Settings(

@@ -2,15 +2,16 @@
 
 import numpy as np
 import pytest
+from study import SETTINGS, study
 
 from placing import dpmm
 from placing.answering import METHODS, Answerer, Learned
-from placing.examples import baseline_values, examples_of
-from placing.learning import BROAD, LearningConfig, learn_theta
 from placing.baselines import FEATURES_OF, learn_histograms
+from placing.examples import baseline_values, examples_of
+from placing.fitting import BROAD, FittingConfig
+from placing.learning import LearningConfig, learn_theta
 from placing.seeds import generator
 from placing.tasks import questions
-from study import SETTINGS, study
 
 
 @pytest.fixture(scope="module")
@@ -18,9 +19,10 @@ def answerer():
     """Return the answers of a method that has learned from the very same scene."""
     scene, candidates, poses = study()
     rng = generator(0, "test")
-    config = LearningConfig(5, 10, 10, 0.2, 50.0, 0.1, 0.05)
+    fitting = FittingConfig(0.2, 50.0, 0.1, 0.05)
+    config = LearningConfig(5, 10, 10)
     examples = [examples_of(scene, poses)]
-    thetas, _ = learn_theta(rng, examples, SETTINGS.sampling, config)
+    thetas, _ = learn_theta(rng, examples, SETTINGS.sampling, config, fitting)
     histograms = {
         method: learn_histograms(
             baseline_values([(scene, candidates)], method), method, SETTINGS.baselines

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from placing import rigid
-from placing.arrangement_checks import (
+from placing.physics.arrangements import (
     bodies_of,
     check_arrangements,
     complaints_about,
 )
+from placing.physics.settling import SettleConfig
 from placing.scene import Arrangement, Furniture, Layout, Placement, SceneObject
-from placing.settling import SettleConfig
 
 CONFIG = SettleConfig()
 BOOK_M = (0.24, 0.17, 0.03)

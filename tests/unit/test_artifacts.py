@@ -5,20 +5,15 @@ import json
 import numpy as np
 import pandas as pd
 import pytest
-
-from placing.artifacts import (
-    read_densities,
-    read_features,
-    read_learned,
-    read_scene,
-    write_densities,
-    write_features,
-    write_scene,
-)
-from placing.errors import BadArtifact
-from placing.files import read_arrays, read_table, write_json, write_table
-from placing.learning import BROAD
 from study import study
+
+from placing.artifacts.densities import read_densities, write_densities
+from placing.artifacts.features import read_features, write_features
+from placing.artifacts.formats import read_arrays, read_table, write_json, write_table
+from placing.artifacts.scenes import read_scene, write_scene
+from placing.artifacts.theta import read_learned
+from placing.errors import BadArtifact
+from placing.fitting import BROAD
 
 
 @pytest.fixture(scope="module")

@@ -25,7 +25,8 @@ def candidates():
 
 
 def test_height_shares_training_objects_among_the_places_of_a_height(candidates):
-    shares = learn_histograms({"mug": np.array([[0.75]] * 3 + [[0.0]])}, "height", CONFIG)
+    values = {"mug": np.array([[0.75]] * 3 + [[0.0]])}
+    shares = learn_histograms(values, "height", CONFIG)
     density = histogram_density(shares["mug"], candidates, "height", CONFIG)
     assert density[90:].sum() == pytest.approx(0.75)
     assert np.ptp(density[:90]) < 1e-12

@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 import trimesh
 
-from placing.bodies import body_of, convex_parts, fixed_pieces, shrunk_hull, spread
+from placing.physics.bodies import (
+    body_of,
+    convex_parts,
+    fixed_pieces,
+    shrunk_hull,
+    spread,
+)
 
 L_SIZE_M = 0.3
 

@@ -9,7 +9,7 @@ from placing.candidates import (
     fits,
     is_unoccupied,
 )
-from placing.ply import Cloud
+from placing.clouds.ply import Cloud
 from placing.scene import PlacingArea, SceneObject
 
 CONFIG = CandidatesConfig(0.05, 8, 0.7, 0.05)

@@ -6,9 +6,11 @@ import pytest
 from scipy import stats
 
 from placing.dpmm import DpmmConfig
-from placing.learning import Example, LearningConfig, fit, learn_theta
+from placing.fitting import FittingConfig, fit
+from placing.learning import Example, LearningConfig, learn_theta
 
-CONFIG = LearningConfig(15, 10, 10, 1.0, 50.0, 0.05, 0.02)
+CONFIG = LearningConfig(15, 10, 10)
+FITTING = FittingConfig(1.0, 50.0, 0.05, 0.02)
 SAMPLING = DpmmConfig(1.0, 8, 0, 1)
 
 
@@ -26,17 +28,17 @@ def drawn_pairs(rng, n):
 
 
 def test_fit_finds_the_parameters_that_drew_the_pairs():
-    theta = fit(drawn_pairs(np.random.default_rng(0), 20_000), CONFIG)
+    theta = fit(drawn_pairs(np.random.default_rng(0), 20_000), FITTING)
     drawn = [-0.5, 0.3, 0.5, 4.0, -0.3, 0.1, 3.0, 2.0]
     np.testing.assert_allclose(theta.vector(), drawn, atol=0.15)
 
 
 def test_kappa_and_sigma_stay_within_their_bounds():
     pairs = drawn_pairs(np.random.default_rng(0), 1).loc[[0] * 500]
-    theta = fit(pairs, CONFIG)
-    assert theta.bearing_kappa <= CONFIG.max_kappa
-    assert theta.log_distance_sigma >= CONFIG.min_log_distance_sigma
-    assert theta.height_sigma_m >= CONFIG.min_height_sigma_m
+    theta = fit(pairs, FITTING)
+    assert theta.bearing_kappa <= FITTING.max_kappa
+    assert theta.log_distance_sigma >= FITTING.min_log_distance_sigma
+    assert theta.height_sigma_m >= FITTING.min_height_sigma_m
 
 
 def simulated_scene(rng, name):
@@ -59,7 +61,7 @@ def simulated_scene(rng, name):
 def test_theta_is_recovered_without_ever_seeing_the_people():
     rng = np.random.default_rng(3)
     scenes = [simulated_scene(rng, f"scene{i}") for i in range(40)]
-    thetas, trace = learn_theta(rng, scenes, SAMPLING, CONFIG)
+    thetas, trace = learn_theta(rng, scenes, SAMPLING, CONFIG, FITTING)
     theta = thetas["mug"]
     assert theta.log_distance_mean == pytest.approx(-0.5, abs=0.25)
     assert theta.height_mean_m == pytest.approx(-0.25, abs=0.05)

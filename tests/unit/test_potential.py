@@ -51,7 +51,7 @@ def test_location_density_integrates_to_one_over_space():
 def test_object_without_front_ignores_its_heading():
     objects, poses = random_pairs(np.random.default_rng(1), 5)
     no_front = np.zeros(5, np.bool_)
-    turned = objects + [0, 0, 0, 1.0]
+    turned = objects + np.array([0, 0, 0, 1.0])
     a = log_psi_human(THETA, objects, no_front, poses)
     np.testing.assert_array_equal(a, log_psi_human(THETA, turned, no_front, poses))
 

@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 import yaml
 
-from placing import rigid, room_plan
-from placing.catalogue import read_catalogue
+from placing import rigid
 from placing.errors import BadInput
-from placing.room_likeness import likeness
-from placing.rooms import read_layout
+from placing.rooms import plan as room_plan
+from placing.rooms.catalogue import read_catalogue
+from placing.rooms.likeness import likeness
+from placing.rooms.reader import read_layout
 from placing.scene import Layout, SceneObject
 
 ROOT = Path(__file__).parents[2]

@@ -3,13 +3,13 @@
 import numpy as np
 import pandas as pd
 import pytest
+from study import study
 
 from placing.answer_tables import NO_PLACE, placement_rows
 from placing.answering import Answer
 from placing.scene import Placement
 from placing.scoring import LABELS, ScoringConfig, density_key, score_scene
 from placing.tasks import questions
-from study import study
 
 CONFIG = ScoringConfig(0.01)
 
@@ -34,8 +34,10 @@ def score(parts, task, placed_by):
             key = density_key("copy", question.name, item.category)
             densities[key] = np.full(n, 1 / n)
     answers = pd.concat(rows, ignore_index=True)
-    return answers, densities, score_scene(
-        scene, answers, densities, candidates, 0.05, CONFIG
+    return (
+        answers,
+        densities,
+        score_scene(scene, answers, densities, candidates, 0.05, CONFIG),
     )
 
 

@@ -9,8 +9,8 @@ import pytest
 import trimesh
 
 from placing import rigid
-from placing.bodies import body_of, fixed_pieces
-from placing.settling import SettleConfig, settle
+from placing.physics.bodies import body_of, fixed_pieces
+from placing.physics.settling import SettleConfig, settle
 from placing.shapes.appliances import slot_centres
 from placing.shapes.furniture import furniture_shape
 from placing.shapes.objects import object_shape

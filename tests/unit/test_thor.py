@@ -5,16 +5,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from placing import thor, thor_data
 from placing.errors import BadInput, UnknownName
 from placing.rigid import yaw_of
 from placing.shapes.furniture import FURNITURE, furniture_shape
 from placing.shapes.objects import OBJECTS
-from placing.thor_items import fit_box, read_item, to_world, to_yaw
-from placing.thor_strips import Strip, area_of, side_strips, subtract
-from placing.thor_support import check_layout, supported_share, true_patches
-from placing.thor_types import read_types
-from placing.thor_walls import outline_of
+from placing.thor import data as thor_data
+from placing.thor import reader as thor
+from placing.thor.items import fit_box, read_item, to_world, to_yaw
+from placing.thor.strips import Strip, area_of, side_strips, subtract
+from placing.thor.support import check_layout, supported_share, true_patches
+from placing.thor.types import read_types
+from placing.thor.walls import outline_of
 
 TYPES = Path(__file__).parents[2] / "config" / "thor_types.csv"
 SCENES = ("FloorPlan1", "FloorPlan2", "FloorPlan207", "FloorPlan302")

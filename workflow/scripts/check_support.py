@@ -7,13 +7,13 @@ import pandas as pd
 from shapely import Polygon
 
 from command import run
-from placing.artifacts import read_scene
-from placing.atomic import replacing
+from placing.artifacts.atomic import replacing
+from placing.artifacts.scenes import read_scene
 from placing.scene import Scene
-from placing.thor import read_layout
-from placing.thor_data import find_data, read_data
-from placing.thor_support import Patch, check_layout
-from placing.thor_types import read_types
+from placing.thor.data import find_data, read_data
+from placing.thor.reader import read_layout
+from placing.thor.support import Patch, check_layout
+from placing.thor.types import read_types
 
 
 def main(scenes: tuple[Path, ...], types: Path, support: Path) -> None:

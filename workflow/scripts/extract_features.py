@@ -3,12 +3,14 @@
 import logging
 from pathlib import Path
 
-from command import run
-from placing.artifacts import read_scene, write_features
-from placing.candidates import CandidatesConfig, find_candidates
-from placing.human import PosesConfig, valid_poses
-from placing.ply import read_ply
 from tqdm import tqdm
+
+from command import run
+from placing.artifacts.features import write_features
+from placing.artifacts.scenes import read_scene
+from placing.candidates import CandidatesConfig, find_candidates
+from placing.clouds.ply import read_ply
+from placing.human import PosesConfig, valid_poses
 
 log = logging.getLogger(__name__)
 

@@ -3,12 +3,13 @@
 import logging
 from pathlib import Path
 
-from command import run
-from placing.areas import AreaConfig, find_areas
-from placing.artifacts import read_scene, write_scene
-from placing.ply import read_ply
-from placing.scene import with_areas
 from tqdm import tqdm
+
+from command import run
+from placing.areas.finder import AreaConfig, find_areas
+from placing.artifacts.scenes import read_scene, write_scene
+from placing.clouds.ply import read_ply
+from placing.scene import with_areas
 
 log = logging.getLogger(__name__)
 

@@ -6,12 +6,14 @@ from dataclasses import asdict
 from pathlib import Path
 
 from command import run
-from placing.artifacts import read_features, read_scene
-from placing.files import write_json, write_table
+from placing.artifacts.features import read_features
+from placing.artifacts.formats import write_json, write_table
+from placing.artifacts.scenes import read_scene
 from placing.baselines import FEATURES_OF, BaselinesConfig, learn_histograms
 from placing.candidates import Candidates
 from placing.dpmm import DpmmConfig
 from placing.examples import baseline_values, examples_of
+from placing.fitting import FittingConfig
 from placing.human import HumanPoses
 from placing.learning import LearningConfig, learn_theta
 from placing.scene import Scene
@@ -29,6 +31,7 @@ def main(
     seed: int,
     sampling: DpmmConfig,
     learning: LearningConfig,
+    fitting: FittingConfig,
     baselines: BaselinesConfig,
 ) -> None:
     """Learn Theta and the baselines of one fold from the scenes of the other folds."""
@@ -41,7 +44,7 @@ def main(
         write_json(theta / f"{method}.json", document)
     rng = generator(seed, "learn_theta", dataset, str(fold))
     examples = [examples_of(scene, poses) for scene, _, poses in training]
-    thetas, trace = learn_theta(rng, examples, sampling, learning)
+    thetas, trace = learn_theta(rng, examples, sampling, learning, fitting)
     document = {name: asdict(value) for name, value in thetas.items()}
     log_likelihood = trace["log_likelihood"].iloc[-1]
     write_json(
@@ -53,7 +56,13 @@ def main(
         },
     )
     write_table(theta / "dp.trace.parquet", trace)
-    log.info("%s fold %d: %d categories, mean log joint %.2f", dataset, fold, len(thetas), log_likelihood)
+    log.info(
+        "%s fold %d: %d categories, mean log joint %.2f",
+        dataset,
+        fold,
+        len(thetas),
+        log_likelihood,
+    )
 
 
 def read_training(

@@ -4,15 +4,16 @@ import logging
 from pathlib import Path
 from typing import Literal
 
+from tqdm import tqdm
+
 from command import run
-from placing.artifacts import write_scene
-from placing.cloud import CloudConfig, preprocess, sample_cloud
+from placing.artifacts.scenes import write_scene
+from placing.clouds.cloud import CloudConfig, preprocess, sample_cloud
+from placing.clouds.ply import write_ply
 from placing.dressing import meshes_of
 from placing.layouts import layout_reader
-from placing.ply import write_ply
 from placing.scene import Scene
 from placing.seeds import generator
-from tqdm import tqdm
 
 log = logging.getLogger(__name__)
 

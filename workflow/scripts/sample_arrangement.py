@@ -4,20 +4,19 @@ import logging
 from pathlib import Path
 
 import pandas as pd
+from tqdm import tqdm
+
 from command import run
 from placing.answer_tables import placement_rows, pose_rows
 from placing.answering import METHODS, Answerer, Settings
-from placing.artifacts import (
-    read_features,
-    read_learned,
-    read_scene,
-    write_densities,
-)
-from placing.files import write_table
+from placing.artifacts.densities import write_densities
+from placing.artifacts.features import read_features
+from placing.artifacts.formats import write_table
+from placing.artifacts.scenes import read_scene
+from placing.artifacts.theta import read_learned
 from placing.scoring import density_key
 from placing.seeds import generator
 from placing.tasks import questions
-from tqdm import tqdm
 
 log = logging.getLogger(__name__)
 

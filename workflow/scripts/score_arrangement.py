@@ -4,10 +4,13 @@ import logging
 from pathlib import Path
 
 import pandas as pd
+
 from command import run
 from placing.answer_tables import PLACEMENT_COLUMNS
-from placing.artifacts import read_densities, read_features, read_scene
-from placing.files import read_table, write_table
+from placing.artifacts.densities import read_densities
+from placing.artifacts.features import read_features
+from placing.artifacts.formats import read_table, write_table
+from placing.artifacts.scenes import read_scene
 from placing.scoring import ScoringConfig, score_scene
 
 log = logging.getLogger(__name__)

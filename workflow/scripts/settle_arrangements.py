@@ -9,18 +9,18 @@ import pandas as pd
 from tqdm import tqdm
 
 from command import run
-from placing.arrangement_checks import (
+from placing.artifacts.atomic import replacing
+from placing.errors import BadInput, unknown
+from placing.physics.arrangements import (
     PlacementCheck,
     bodies_of,
     check_arrangements,
     complaints_about,
 )
-from placing.atomic import replacing
-from placing.catalogue import read_catalogue
-from placing.errors import BadInput, unknown
-from placing.room_file import read_yaml
-from placing.rooms import read_layout
-from placing.settling import SettleConfig
+from placing.physics.settling import SettleConfig
+from placing.rooms.catalogue import read_catalogue
+from placing.rooms.file import read_yaml
+from placing.rooms.reader import read_layout
 
 log = logging.getLogger(__name__)
 MOST_LINES = 20

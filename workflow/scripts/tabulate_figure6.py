@@ -3,8 +3,9 @@
 from pathlib import Path
 
 import pandas as pd
+
 from command import run
-from placing.files import read_table, write_csv
+from placing.artifacts.formats import read_table, write_csv
 from placing.metrics import SCORE_COLUMNS, summarise
 from placing.report import figure6_markdown, write_text
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class Support:
-    """A horizontal patch of a mesh that holds objects: the truth about placing areas."""
+    """A horizontal patch of a mesh that holds objects: a true placing area."""
 
     name: str
     """Unique in its shape: `top`, `shelf1` (from below), `seat`, `basin`, ..."""

@@ -1,0 +1,1 @@
+"""Placing areas: found in a cloud, and compared with true supports."""

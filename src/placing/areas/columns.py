@@ -1,0 +1,121 @@
+"""Columns of a cloud: which points lie above which cell of the floor plan.
+
+A column is one cell of a grid on the floor plan with its points sorted by height.
+Points that face down, such as the underside of a board, and points that face up, such
+as the top of a box, bound the free height of what lies below them.
+
+Letters for shapes: n points, c columns, t tiles, q queries.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from placing.clouds.ply import Cloud
+
+UP, SIDE, DOWN = 1, 0, -1
+STEEPEST = 0.5
+"""Points face sideways when the height of their unit normal is below this."""
+# ASSUME: points up to 2.5 cm above a level are its noise, or belong to a thin layer on
+# it; what faces down bounds it from 5 mm below, since what stands on it touches it.
+MARGIN_M, CONTACT_M = 0.025, 0.005
+
+
+@dataclass(frozen=True)
+class Columns:
+    """The points of a cloud, sorted into columns and by height within each."""
+
+    cell_m: float
+    origin_m: NDArray[np.float64]
+    """(2,) lower corner of the first column."""
+    shape: tuple[int, int]
+    """Columns along x and along y; the outermost ones are empty."""
+    start: NDArray[np.int64]
+    """(c + 1,) first point of each column, and the end of the last one."""
+    points: NDArray[np.float32]
+    """(n, 3) [m]."""
+    rise: NDArray[np.float32]
+    """(n,) height of the unit normal: 1 faces up, -1 faces down."""
+    facing: NDArray[np.int8]
+    """(n,) `UP`, `SIDE` or `DOWN`."""
+
+
+def sort_columns(cloud: Cloud, cell_m: float) -> Columns:
+    """Return the points of the cloud sorted into columns."""
+    origin = cloud.points[:, :2].min(axis=0).astype(float) - cell_m
+    cells = ((cloud.points[:, :2] - origin) / cell_m).astype(np.int64)  # (n, 2)
+    shape = (int(cells[:, 0].max()) + 2, int(cells[:, 1].max()) + 2)
+    column = cells[:, 0] * shape[1] + cells[:, 1]
+    z = cloud.points[:, 2]
+    # One integer key sorts three times as fast as two keys: tenths of millimetres.
+    height = ((z - z.min()) * 1e4).astype(np.int64)
+    order = np.argsort(column * (int(height.max()) + 1) + height)
+    rise = cloud.normals[order, 2]
+    facing = np.sign(rise) * (np.abs(rise) > STEEPEST)
+    count = np.bincount(column, minlength=shape[0] * shape[1])
+    return Columns(
+        cell_m=cell_m,
+        origin_m=origin,
+        shape=shape,
+        start=np.append(0, np.cumsum(count)),
+        points=cloud.points[order],
+        rise=rise,
+        facing=facing.astype(np.int8),
+    )
+
+
+def free_heights(
+    columns: Columns, xy_m: NDArray, heights_m: NDArray, radius_m: float
+) -> NDArray[np.float64]:
+    """Return the free height above points, `inf` without bound, shape (q,) [m].
+
+    All points of the cloud within `radius_m` count, whatever way they face.
+    """
+    return _free_heights(
+        np.asarray(xy_m, float) - columns.origin_m,
+        np.asarray(heights_m, float),
+        radius_m,
+        (columns.cell_m, *columns.shape),
+        columns.start,
+        columns.points[:, :2] - columns.origin_m,
+        columns.points[:, 2],
+        columns.facing,
+    )
+
+
+@njit(cache=True)
+def _free_heights(
+    xy: NDArray,
+    heights: NDArray,
+    radius: float,
+    grid: tuple[float, int, int],
+    start: NDArray,
+    points_xy: NDArray,
+    points_z: NDArray,
+    facing: NDArray,
+) -> NDArray:
+    """Return the height of the lowest bound within the radius of each query."""
+    cell, n_x, n_y = grid
+    free = np.full(len(xy), np.inf)
+    for k in range(len(xy)):
+        x, y = xy[k]
+        i_first, i_last = int((x - radius) // cell), int((x + radius) // cell)
+        j_first, j_last = int((y - radius) // cell), int((y + radius) // cell)
+        for i in range(max(0, i_first), min(n_x, i_last + 1)):
+            for j in range(max(0, j_first), min(n_y, j_last + 1)):
+                for p in range(start[i * n_y + j], start[i * n_y + j + 1]):
+                    above = points_z[p] - heights[k]
+                    if above >= free[k]:
+                        break
+                    gap = np.hypot(points_xy[p, 0] - x, points_xy[p, 1] - y)
+                    if gap <= radius and bounds(above, facing[p]):
+                        free[k] = max(above, 0.0)
+    return free
+
+
+@njit(cache=True)
+def bounds(above_m: float, facing: int) -> bool:
+    """Tell whether a point at this height above a level lies above what is there."""
+    return above_m > -CONTACT_M if facing == DOWN else above_m > MARGIN_M

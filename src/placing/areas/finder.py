@@ -1,0 +1,197 @@
+"""Placing areas of a scene, found in its cloud alone.
+
+A placing area E_j is a level patch that objects can stand on: the floor, the top of a
+table, each board of a shelf. It is a group of tiles (see `placing.areas.tiles`) at one
+height, with one free height above it, and its outline is a simple polygon.
+
+Letters for shapes: t tiles, v corners, q queries.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from placing.areas.columns import Columns, free_heights, sort_columns
+from placing.areas.outlines import open_holes, outlines
+from placing.areas.tiles import (
+    Tiles,
+    find_tiles,
+    group,
+    pair_neighbors,
+    smooth_clearance,
+)
+from placing.clouds.ply import Cloud
+from placing.scene import PlacingArea
+
+# ASSUME: a pin of this radius stands for an object whose size is not yet known.
+PIN_RADIUS_M = 0.02
+
+
+@dataclass(frozen=True)
+class AreaConfig:
+    """Settings of the search; the values live in `config/config.yaml`."""
+
+    cell_m: float
+    """Edge of the cells of the floor plan."""
+    max_tilt_rad: float
+    """Largest angle between the normal of a point and the vertical."""
+    max_height_m: float
+    """Nothing is put down higher."""
+    merge_m: float
+    """Points and patches closer in height are one level."""
+    min_width_m: float
+    """An area holds a square of this width."""
+    min_clearance_m: float
+    """An area has so much free height."""
+    clearance_step_m: float
+    """Where the free height changes more, one area ends and another begins."""
+    clearance_quantile: float
+    """Part of an area whose free height may be below the one it is given."""
+
+
+def find_areas(cloud: Cloud, config: AreaConfig) -> tuple[PlacingArea, ...]:
+    """Return the placing areas of a level cloud, the floor first, then by height."""
+    columns = sort_columns(cloud, config.cell_m)
+    tiles = find_tiles(
+        columns, config.max_tilt_rad, config.max_height_m, config.merge_m
+    )
+    if len(tiles.cell) == 0:
+        return ()
+    pairs = pair_neighbors(tiles, config.merge_m)
+    tiles = replace(tiles, clearance_m=smooth_clearance(tiles, pairs))
+    is_free = tiles.clearance_m >= config.min_clearance_m
+    tiles = tiles.take(is_free)
+    position = np.cumsum(is_free) - 1
+    pairs = position[pairs[is_free[pairs].all(axis=1)]]
+    labels = group(tiles, pairs, config.clearance_step_m)
+    labels = _flatten(tiles, labels, config.merge_m)
+    labels = _absorb(tiles, pairs, labels, config)
+    areas = [
+        area
+        for members in _members(labels)
+        for area in _areas(columns, tiles.take(members), config)
+    ]
+    return _name(areas, config.merge_m)
+
+
+def clearance_at(
+    cloud: Cloud | Columns, area: PlacingArea, xy_m: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return the free height above points of an area, `inf` if open, shape (q,) [m].
+
+    Who asks for several areas sorts the cloud once: `sort_columns(cloud, cell_m)`.
+    """
+    columns = sort_columns(cloud, 0.04) if isinstance(cloud, Cloud) else cloud
+    heights = np.full(len(xy_m), area.height_m)
+    return free_heights(columns, np.reshape(xy_m, (-1, 2)), heights, PIN_RADIUS_M)
+
+
+def _flatten(tiles: Tiles, labels: NDArray, merge_m: float) -> NDArray[np.int64]:
+    """Return labels with groups that are not level cut into level bands, shape (t,)."""
+    labels = labels.copy()
+    for members in _members(labels):
+        height = tiles.height_m[members]
+        rest = np.arange(len(members))
+        while np.ptp(height) > 2 * merge_m and len(rest):
+            band = ((height[rest] - height[rest].min()) / merge_m).astype(np.intp)
+            fullest = np.bincount(band).argmax()
+            peak = np.median(height[rest][band == fullest])
+            is_level = np.abs(height[rest] - peak) <= merge_m
+            labels[members[rest[is_level]]] = labels.max() + 1
+            rest = rest[~is_level]
+    return labels
+
+
+def _absorb(
+    tiles: Tiles, pairs: NDArray, labels: NDArray, config: AreaConfig
+) -> NDArray[np.int64]:
+    """Return labels with groups too small for an area joined to a large neighbour.
+
+    A lamp above a desk lowers the free height on a patch that is still desk.
+    """
+    n_fewest = (config.min_width_m / config.cell_m) ** 2
+    size = np.bincount(labels)
+    is_small = size < n_fewest
+    crossing = pairs[~tiles.is_border[pairs].any(axis=1)]
+    small, large = labels[np.concatenate([crossing, crossing[:, ::-1]])].T
+    is_useful = is_small[small] & ~is_small[large]
+    joined, count = np.unique(
+        np.stack([small[is_useful], large[is_useful]], axis=1),
+        axis=0,
+        return_counts=True,
+    )
+    target = np.arange(len(size))
+    for k in np.argsort(count, kind="stable"):  # The longest common border comes last.
+        target[joined[k, 0]] = joined[k, 1]
+    return target[labels]
+
+
+def _members(labels: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+    """Return the tiles of each group."""
+    order = np.argsort(labels, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(labels[order])) + 1)
+
+
+def _areas(columns: Columns, tiles: Tiles, config: AreaConfig) -> list[PlacingArea]:
+    """Return the areas of one group of tiles, without names."""
+    if len(tiles.cell) < (config.min_width_m / config.cell_m) ** 2:
+        return []
+    height = float(np.median(tiles.height_m))
+    points = _level_points(columns, tiles, config)
+    polygons = outlines(
+        tiles.cell, points, columns.origin_m, columns.cell_m, config.min_width_m
+    )
+    clearance = float(
+        np.quantile(tiles.clearance_m, config.clearance_quantile, method="lower")
+    )
+    return [
+        PlacingArea("", _corners(polygon), height, clearance, False, None)
+        for polygon in polygons
+    ]
+
+
+def _level_points(columns: Columns, tiles: Tiles, config: AreaConfig) -> NDArray:
+    """Return the points that made the tiles, shape (n, 2) [m]."""
+    column = tiles.cell[:, 0] * columns.shape[1] + tiles.cell[:, 1]
+    first, count = columns.start[column], np.diff(columns.start)[column]
+    tile = np.repeat(np.arange(len(column)), count)
+    inside = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    chosen = first[tile] + inside
+    is_level = (
+        np.abs(columns.points[chosen, 2] - tiles.height_m[tile]) <= config.merge_m
+    )
+    is_level &= columns.rise[chosen] > np.cos(config.max_tilt_rad)
+    return columns.points[chosen[is_level], :2].astype(float)
+
+
+def _corners(polygon: shapely.Polygon) -> NDArray[np.float64]:
+    """Return the corners of a polygon with its holes opened, counter-clockwise."""
+    simple = shapely.geometry.polygon.orient(open_holes(polygon))
+    return np.asarray(simple.exterior.coords)[:-1]
+
+
+def _name(areas: list[PlacingArea], merge_m: float) -> tuple[PlacingArea, ...]:
+    """Return the areas with names: the floor first, then by height, x and y."""
+
+    def key(area: PlacingArea) -> tuple[float, ...]:
+        """Return height, then position, in whole centimetres against noise."""
+        low = area.polygon_m.min(axis=0)
+        return (round(area.height_m, 2), *np.round(low, 2), area.height_m)
+
+    areas = [
+        replace(area, is_floor=abs(area.height_m) <= merge_m)
+        for area in sorted(areas, key=key)
+    ]
+    floors = [k for k, area in enumerate(areas) if area.is_floor]
+    if floors:
+        sizes = [shapely.Polygon(areas[k].polygon_m).area for k in floors]
+        areas.insert(0, areas.pop(floors[int(np.argmax(sizes))]))
+    first = 0 if floors else 1
+    names = [f"area{k}" for k in range(first, first + len(areas))]
+    if floors:
+        names[0] = "floor"
+    return tuple(
+        replace(area, area=name) for area, name in zip(areas, names, strict=True)
+    )

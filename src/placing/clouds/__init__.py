@@ -1,0 +1,1 @@
+"""Point clouds: files, sampling and preprocessing."""

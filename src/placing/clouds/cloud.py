@@ -1,0 +1,198 @@
+"""Clouds of points: sampled from meshes, and preprocessed whatever their source.
+
+Preprocessing makes every cloud alike: without outliers, thinned to one point per voxel
+and side, with normals, level, and with its floor at z = 0. Clouds sampled from meshes
+have true normals; those of a scanner get theirs from neighbouring points.
+
+Letters for shapes: n points, f faces.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import trimesh
+from numba import njit
+from numpy.random import Generator
+from numpy.typing import NDArray
+
+from placing.clouds.levelling import estimate_normals, level
+from placing.clouds.ply import Cloud
+from placing.errors import BadInput
+
+TILE = 64
+"""Period of the jitter of the sampling lattice, in lattice cells."""
+
+
+@dataclass(frozen=True)
+class CloudConfig:
+    """Settings of the preprocessing; the values live in `config/config.yaml`."""
+
+    crop_m: tuple[tuple[float, float, float], tuple[float, float, float]] | None
+    """Lower and upper corner of what is kept of the raw cloud; None keeps all."""
+    up: tuple[float, float, float]
+    """Where up is in the raw cloud, right to `max_tilt_rad`."""
+    voxel_m: float
+    """Edge of the voxels that hold one point per side of what they cut."""
+    outlier_cell_m: float
+    """Edge of the cells in which neighbours of a point are counted."""
+    outlier_neighbors: int
+    """A point is an outlier if its cell and those around hold no more others."""
+    normal_neighbors: int
+    """Neighbours that a plane is fitted to where the cloud has no normals."""
+    max_tilt_rad: float
+    """Largest angle between `up` and the true vertical."""
+    floor_fraction: float
+    """Points of the floor, as a fraction of those of the fullest level."""
+    min_points: int
+    """Fewest points that make a scene."""
+
+
+def sample_cloud(
+    rng: Generator, meshes: Sequence[trimesh.Trimesh], spacing_m: float
+) -> Cloud:
+    """Return points on the faces of the meshes, one per square of `spacing_m`.
+
+    The points are a jittered lattice in the coordinate plane that a face is closest
+    to: other than independent draws in proportion to area it leaves no gaps.
+    """
+    if not meshes:
+        raise ValueError("expected at least one mesh to sample")
+    triangles = np.concatenate([m.triangles for m in meshes]).astype(float)  # (f, 3, 3)
+    colors = np.concatenate([_face_colors(m) for m in meshes])  # (f, 3)
+    edges = triangles[:, 1:] - triangles[:, :1]
+    normals = np.cross(edges[:, 0], edges[:, 1])  # (f, 3)
+    length = np.linalg.norm(normals, axis=1)
+    is_face = length > 1e-12  # Faces without area have no normal.
+    triangles, colors = triangles[is_face], colors[is_face]
+    normals = normals[is_face] / length[is_face, None]
+    axes = np.abs(normals).argmax(axis=1)
+    jitter = rng.random((3, TILE, TILE, 2))
+    points, faces = _rasterise(triangles, axes, jitter, spacing_m)
+    return Cloud(points, normals[faces].astype(np.float32), colors[faces])
+
+
+def preprocess(cloud: Cloud, config: CloudConfig) -> Cloud:
+    """Return the cloud cropped, thinned, cleaned, with normals, level, floor at 0."""
+    if config.crop_m is not None:
+        low, high = np.asarray(config.crop_m, np.float32)
+        inside = (cloud.points >= low) & (cloud.points <= high)
+        cloud = cloud.take(inside.all(axis=1))
+    cloud = drop_outliers(thin(cloud, config.voxel_m), config)
+    if len(cloud) < config.min_points:
+        raise BadInput(
+            f"cloud: field points is {len(cloud)} after cropping and thinning,"
+            f" expected at least {config.min_points}"
+        )
+    if not cloud.normals.any():
+        cloud = estimate_normals(
+            cloud, config.normal_neighbors, config.up, config.max_tilt_rad
+        )
+    return level(cloud, config.up, config.max_tilt_rad, config.floor_fraction)
+
+
+def thin(cloud: Cloud, voxel_m: float) -> Cloud:
+    """Return the mean of the points of each voxel, one for each side of a thin board.
+
+    Points whose normals have different main directions are not averaged, so that a
+    board thinner than a voxel keeps its upper and its lower face.
+    """
+    low = cloud.points.min(axis=0) - 0.37 * voxel_m  # Off the round heights of designs.
+    voxels = ((cloud.points - low) / voxel_m).astype(np.int64)  # (n, 3)
+    shape = voxels.max(axis=0) + 1
+    key = (voxels[:, 0] * shape[1] + voxels[:, 1]) * shape[2] + voxels[:, 2]
+    key = key * 8 + _side(cloud.normals)
+    order = np.argsort(key, kind="stable")
+    starts = np.flatnonzero(np.diff(key[order], prepend=-1))
+    count = np.diff(starts, append=len(order))[:, None]
+
+    def mean(values: NDArray) -> NDArray[np.float64]:
+        """Return the mean of the values in each voxel."""
+        return np.add.reduceat(values[order].astype(float), starts) / count
+
+    normals = mean(cloud.normals)
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = np.divide(normals, length, out=normals, where=length > 0)
+    return Cloud(
+        mean(cloud.points).astype(np.float32),
+        normals.astype(np.float32),
+        mean(cloud.colors).round().astype(np.uint8),
+    )
+
+
+def drop_outliers(cloud: Cloud, config: CloudConfig) -> Cloud:
+    """Return the cloud without points that have few others around them."""
+    # Counting in cells takes a tenth of the time of searching nearest neighbours.
+    cells = (
+        (cloud.points - cloud.points.min(axis=0)) / config.outlier_cell_m + 1
+    ).astype(np.int64)
+    shape = cells.max(axis=0) + 2  # An empty border: neighbours never wrap around.
+    key = (cells[:, 0] * shape[1] + cells[:, 1]) * shape[2] + cells[:, 2]
+    filled, cell, count = np.unique(key, return_inverse=True, return_counts=True)
+    total = np.append(0, np.cumsum(count))
+    around = np.zeros(len(filled), np.int64)
+    for dx in (-1, 0, 1):
+        for dy in (-1, 0, 1):
+            middle = filled + (dx * shape[1] + dy) * shape[2]
+            first = np.searchsorted(filled, middle - 1)
+            around += total[np.searchsorted(filled, middle + 2)] - total[first]
+    return cloud.take(around[cell] > config.outlier_neighbors)
+
+
+def _face_colors(mesh: trimesh.Trimesh) -> NDArray[np.uint8]:
+    """Return red, green and blue of each face, shape (f, 3)."""
+    return np.asarray(getattr(mesh.visual, "face_colors"))[:, :3]  # noqa: B009
+
+
+def _side(normals: NDArray[np.float32]) -> NDArray[np.int64]:
+    """Return which of six main directions each normal has, 6 without, shape (n,)."""
+    axis = np.abs(normals).argmax(axis=1)
+    along = np.take_along_axis(normals, axis[:, None], axis=1)[:, 0]
+    return np.where(along == 0, 6, 2 * axis + (along > 0))
+
+
+def _rasterise(
+    triangles: NDArray, axes: NDArray, jitter: NDArray, spacing_m: float
+) -> tuple[NDArray[np.float32], NDArray[np.intp]]:
+    """Return lattice points on the triangles, and the triangle of each."""
+    none, no_faces = np.empty((0, 3), np.float32), np.empty(0, np.intp)
+    n = _fill_lattice(triangles, axes, jitter, spacing_m, none, no_faces)
+    points, faces = np.empty((n, 3), np.float32), np.empty(n, np.intp)
+    _fill_lattice(triangles, axes, jitter, spacing_m, points, faces)
+    return points, faces
+
+
+@njit(cache=True)
+def _fill_lattice(
+    triangles: NDArray,
+    axes: NDArray,
+    jitter: NDArray,
+    spacing_m: float,
+    points: NDArray,
+    faces: NDArray,
+) -> int:
+    """Count the lattice points on all triangles, and write them where there is room."""
+    n = 0
+    for f in range(len(triangles)):
+        w = axes[f]
+        u, v = (w + 1) % 3, (w + 2) % 3
+        a, b, c = triangles[f, 0], triangles[f, 1], triangles[f, 2]
+        area = (b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u])
+        i_first = int(np.floor(min(a[u], b[u], c[u]) / spacing_m)) - 1
+        i_last = int(np.floor(max(a[u], b[u], c[u]) / spacing_m))
+        j_first = int(np.floor(min(a[v], b[v], c[v]) / spacing_m)) - 1
+        j_last = int(np.floor(max(a[v], b[v], c[v]) / spacing_m))
+        for i in range(i_first, i_last + 1):
+            for j in range(j_first, j_last + 1):
+                shift = jitter[w, i % TILE, j % TILE]
+                p, q = (i + shift[0]) * spacing_m, (j + shift[1]) * spacing_m
+                t_b = ((p - a[u]) * (c[v] - a[v]) - (q - a[v]) * (c[u] - a[u])) / area
+                t_c = ((b[u] - a[u]) * (q - a[v]) - (b[v] - a[v]) * (p - a[u])) / area
+                if t_b < 0 or t_c < 0 or t_b + t_c > 1:
+                    continue
+                if n < len(points):
+                    points[n, u], points[n, v] = p, q
+                    points[n, w] = a[w] + t_b * (b[w] - a[w]) + t_c * (c[w] - a[w])
+                    faces[n] = f
+                n += 1
+    return n

@@ -1,0 +1,105 @@
+"""Normals of a scan, and the rigid motion that levels it on its floor.
+
+Letters for shapes: n points, k neighbours.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from placing.clouds.ply import Cloud
+from placing.errors import BadInput
+
+BIN_M = 0.01
+"""Height of the bins in which levels of a scene are counted."""
+
+
+def estimate_normals(
+    cloud: Cloud, n_neighbors: int, up: tuple[float, float, float], max_tilt_rad: float
+) -> Cloud:
+    """Return the cloud with normals of planes through the neighbours of each point."""
+    tree = cKDTree(cloud.points)
+    neighbors = tree.query(cloud.points, min(n_neighbors, len(cloud)))[1]  # (n, k)
+    around = cloud.points[neighbors]
+    around = around - around.mean(axis=1, keepdims=True)
+    covariance = np.einsum("nki,nkj->nij", around, around)
+    normals = np.linalg.eigh(covariance.astype(float))[1][:, :, 0]  # (n, 3)
+    normals *= _orientation(cloud.points, normals, np.asarray(up), max_tilt_rad)[
+        :, None
+    ]
+    return Cloud(cloud.points, normals.astype(np.float32), cloud.colors)
+
+
+def level(
+    cloud: Cloud, up: tuple[float, float, float], max_tilt_rad: float, fraction: float
+) -> Cloud:
+    """Return the cloud turned upright and moved until its floor is at z = 0."""
+    R = turn_to_z(vertical(cloud, np.asarray(up, float), max_tilt_rad))  # (3, 3)
+    points = (cloud.points @ R.T).astype(np.float32)
+    normals = (cloud.normals @ R.T).astype(np.float32)
+    points[:, 2] -= floor_height(points, normals, max_tilt_rad, fraction)
+    return Cloud(points, normals, cloud.colors)
+
+
+def vertical(
+    cloud: Cloud, up: NDArray[np.float64], max_tilt_rad: float
+) -> NDArray[np.float64]:
+    """Return the normal that most near-horizontal points share, unit length, (3,)."""
+    direction = up / np.linalg.norm(up)
+    for angle in (max_tilt_rad, max_tilt_rad / 2, max_tilt_rad / 4, max_tilt_rad / 8):
+        is_near = cloud.normals @ direction > np.cos(angle)
+        if not is_near.any():
+            raise BadInput(
+                f"cloud: field up is {up.tolist()}, but no point faces there within"
+                f" {max_tilt_rad:.2f} rad; expected the direction of the ceiling"
+            )
+        direction = np.median(cloud.normals[is_near], axis=0).astype(float)
+        direction /= np.linalg.norm(direction)
+    return direction
+
+
+def turn_to_z(direction: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the smallest rotation that turns a unit vector to z, shape (3, 3)."""
+    x, y, z = direction
+    if z < -1 + 1e-12:  # Opposite to z the smallest rotation is not unique.
+        return np.diag([1.0, -1.0, -1.0])
+    skew = np.array([[0.0, 0.0, -x], [0.0, 0.0, -y], [x, y, 0.0]])
+    return np.eye(3) + skew + skew @ skew / (1 + z)
+
+
+def floor_height(
+    points: NDArray[np.float32],
+    normals: NDArray[np.float32],
+    max_tilt_rad: float,
+    fraction: float,
+) -> float:
+    """Return the height of the lowest well-filled level that faces up [m]."""
+    z = points[normals[:, 2] > np.cos(max_tilt_rad), 2]
+    bins = np.floor((z - z.min()) / BIN_M).astype(np.intp)
+    count = np.convolve(np.bincount(bins), np.ones(3), mode="same")
+    lowest = int(np.argmax(count >= fraction * count.max()))
+    near = slice(lowest, lowest + 5)  # The peak is just above the first full bin.
+    peak = z.min() + (lowest + int(np.argmax(count[near])) + 0.5) * BIN_M
+    return float(np.median(z[np.abs(z - peak) < 2 * BIN_M]))
+
+
+def _orientation(
+    points: NDArray[np.float32],
+    normals: NDArray[np.float64],
+    up: NDArray[np.float64],
+    max_tilt_rad: float,
+) -> NDArray[np.float64]:
+    """Return the sign that makes each normal point to free space, shape (n,).
+
+    Level points face up but for those of the ceiling; all others face the middle.
+    """
+    up = up / np.linalg.norm(up)
+    rise = normals @ up
+    height = points @ up
+    # ASSUME: level points in the top tenth of the scene's height belong to the ceiling.
+    low, high = np.quantile(height, [0.01, 0.99])
+    is_ceiling = height > high - 0.1 * (high - low)
+    level_sign = np.where(is_ceiling, -np.sign(rise), np.sign(rise))
+    inwards = np.sign(np.sum((np.median(points, axis=0) - points) * normals, axis=1))
+    sign = np.where(np.abs(rise) > np.cos(max_tilt_rad), level_sign, inwards)
+    return np.where(sign == 0, 1.0, sign)

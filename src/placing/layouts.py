@@ -1,0 +1,28 @@
+"""Layouts of every data set that starts from meshes, behind one function."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import yaml
+
+from placing.rooms import reader as rooms
+from placing.rooms.catalogue import read_catalogue
+from placing.scene import Layout
+from placing.thor import reader as thor
+from placing.thor.data import find_data, read_data
+from placing.thor.types import read_types
+
+
+def layout_reader(
+    dataset: str, folder: Path, schema: Path, catalogue: Path, types: Path
+) -> Callable[[str], Layout]:
+    """Return the function from the name of a scene to its layout.
+
+    `rooms` are files of `folder` checked by `schema`, with objects of `catalogue`;
+    `thor` are scenes of the installed designers' rooms, mapped by `types`.
+    """
+    if dataset == "rooms":
+        objects, room = read_catalogue(catalogue), yaml.safe_load(schema.read_text())
+        return lambda name: rooms.read_layout(folder / f"{name}.yaml", objects, room)
+    data, thor_types = read_data(find_data()), read_types(types)
+    return lambda name: thor.read_layout(data, name, thor_types)

@@ -1,0 +1,179 @@
+"""Whether labelled arrangements are possible: inside, supported, apart and at rest."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from shapely import MultiPoint, Polygon
+
+from placing import rigid
+from placing.physics.bodies import Body, Piece, body_of, fixed_pieces
+from placing.physics.settling import SettleConfig, Settled, settle
+from placing.rigid import Array
+from placing.scene import Arrangement, Layout, Placement, SceneObject
+from placing.shapes.building import walls_shape
+from placing.shapes.furniture import furniture_shape
+from placing.shapes.objects import object_shape
+
+TOLERANCE_M = 0.001
+"""Guards the comparison of an outline with what touches it."""
+FLOOR_M = 0.01
+"""What is carried by walls below this height is carried by the floor."""
+WALLS = "walls"
+"""Name of the walls, whose mesh holds the floor, among the fixed pieces."""
+
+
+@dataclass(frozen=True)
+class PlacementCheck:
+    """What was found about one labelled placement."""
+
+    scene: str
+    labeller: str
+    object: str
+    is_inside: bool
+    """Whether it lies within the walls, above the floor and below the ceiling."""
+    support: str
+    """What carries it in the end, names joined by `+`."""
+    penetration_m: float
+    """Deepest overlap with anything else."""
+    moved_m: float
+    tilted_deg: float
+    stays: bool
+    """Whether nothing is wrong with it."""
+    reason: str
+    """What is wrong with it; empty if it stays."""
+
+
+def check_arrangements(
+    layout: Layout, bodies: Mapping[str, Body], config: SettleConfig
+) -> list[PlacementCheck]:
+    """Return what is found about each placement of each arrangement of a room."""
+    fixed = fixed_of(layout, config.margin_m)
+    return [
+        check
+        for arrangement in layout.arrangements
+        for check in check_arrangement(layout, arrangement, fixed, bodies, config)
+    ]
+
+
+def bodies_of(objects: Iterable[SceneObject], margin_m: float) -> dict[str, Body]:
+    """Return the bodies of objects by id; the slow part, so worth doing once."""
+    return {
+        item.object_id: body_of(
+            object_shape(item.shape, item.size_m).mesh, item.mass_kg, margin_m
+        )
+        for item in objects
+    }
+
+
+def fixed_of(layout: Layout, margin_m: float) -> dict[str, tuple[Piece, ...]]:
+    """Return walls and furniture in the world, by the id of the furniture."""
+    meshes = {WALLS: walls_shape(layout).mesh}
+    for piece in layout.furniture:
+        mesh = furniture_shape(piece.kind, piece.size_m).mesh.copy()
+        mesh.apply_transform(rigid.homogeneous(piece.T_world_furniture))
+        meshes[piece.furniture_id] = mesh
+    return {name: fixed_pieces(mesh, margin_m) for name, mesh in meshes.items()}
+
+
+def check_arrangement(
+    layout: Layout,
+    arrangement: Arrangement,
+    fixed: Mapping[str, tuple[Piece, ...]],
+    bodies: Mapping[str, Body],
+    config: SettleConfig,
+) -> list[PlacementCheck]:
+    """Return what is found about each placement when all settle together."""
+    poses = {p.object_id: pose_of(p) for p in arrangement.placements}
+    placed = {name: (bodies[name], T) for name, T in poses.items()}
+    settled = settle(fixed, placed, config)
+    checks = []
+    for placement in arrangement.placements:
+        name = placement.object_id
+        corners_m = rigid.apply(poses[name], bodies[name].corners_m)
+        inside, end = is_inside(layout, corners_m), settled[name]
+        support = supports_of(end, corners_m)
+        reason = reason_of(placement, inside, support, end, config)
+        checks.append(
+            PlacementCheck(
+                scene=layout.scene,
+                labeller=arrangement.name,
+                object=name,
+                is_inside=inside,
+                support="+".join(support),
+                penetration_m=round(end.penetration_m, 4),
+                moved_m=round(end.moved_m, 4),
+                tilted_deg=round(end.tilted_deg, 2),
+                stays=not reason,
+                reason=reason,
+            )
+        )
+    return checks
+
+
+def pose_of(placement: Placement) -> Array:
+    """Return the pose of a placed object in the world, shape (7,)."""
+    return np.concatenate([placement.orientation, placement.location])
+
+
+def is_inside(layout: Layout, corners_m: Array) -> bool:
+    """Return whether all corners lie within the walls, the floor and the ceiling."""
+    room = Polygon(layout.outline_m).buffer(TOLERANCE_M, join_style="mitre")
+    low, high = corners_m[:, 2].min(), corners_m[:, 2].max()
+    is_between = low >= -TOLERANCE_M and high <= layout.height_m + TOLERANCE_M
+    return bool(is_between and room.covers(MultiPoint(corners_m[:, :2])))
+
+
+def supports_of(settled: Settled, corners_m: Array) -> tuple[str, ...]:
+    """Return the names of what carries an object, the floor by its own name."""
+    is_low = corners_m[:, 2].min() < FLOOR_M
+    return tuple(
+        "floor" if name == WALLS and is_low else name for name in settled.supports
+    )
+
+
+def reason_of(
+    placement: Placement,
+    inside: bool,
+    support: tuple[str, ...],
+    settled: Settled,
+    config: SettleConfig,
+) -> str:
+    """Return what is wrong with a placement, the cause before what follows from it."""
+    if not inside:
+        return "outside the room"
+    if settled.penetration_m > config.max_penetration_m:
+        return (
+            f"penetrates {settled.penetrated} by {settled.penetration_m * 1e3:.0f} mm"
+        )
+    if settled.dropped_m > config.max_drop_m:
+        return f"fell {settled.dropped_m * 1e3:.0f} mm"
+    if settled.tilted_deg > config.max_tilted_deg:
+        return f"tilted {settled.tilted_deg:.0f} deg"
+    if settled.moved_m > config.max_moved_m:
+        return f"moved {settled.moved_m * 1e3:.0f} mm"
+    if settled.speed_m_s > config.max_speed_m_s:
+        return f"still moves at {settled.speed_m_s:.2f} m/s"
+    if placement.area not in support:
+        carrier = " and ".join(support) or "nothing"
+        return f"not supported by {placement.area} but by {carrier}"
+    return ""
+
+
+def complaints_about(layout: Layout, config: SettleConfig) -> list[str]:
+    """Return a line for each rule that the arrangements of a room as a whole break."""
+    least, most = config.min_arrangements, config.max_arrangements
+    complaints = []
+    if not least <= len(layout.arrangements) <= most:
+        complaints.append(
+            f"{layout.scene}: has {len(layout.arrangements)} arrangements, "
+            f"expected {least} to {most}"
+        )
+    listed = {item.object_id for item in layout.objects}
+    for arrangement in layout.arrangements:
+        missing = listed - {p.object_id for p in arrangement.placements}
+        complaints += [
+            f"{layout.scene} {arrangement.name} {name}: not placed"
+            for name in sorted(missing)
+        ]
+    return complaints

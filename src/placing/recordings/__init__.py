@@ -1,0 +1,1 @@
+"""Recordings of scenes for the rerun viewer."""

@@ -1,0 +1,1 @@
+"""The data set `rooms`: room files, labelled arrangements and their checks."""

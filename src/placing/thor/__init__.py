@@ -1,0 +1,1 @@
+"""The data set `thor`: rooms of professional designers, dressed with shapes."""

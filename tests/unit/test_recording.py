@@ -1,0 +1,211 @@
+"""A recording holds the whole scene, opens without a click and is always the same."""
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from rerun.chunk import RrdReader
+
+from placing import skeleton
+from placing.recordings.content import Boxes, Mesh, SceneRecording, summary
+from placing.recordings.writer import count_rows, write_recording
+from placing.scene import PlacingArea
+
+RERUN = Path(sys.executable).with_name("rerun")
+N_SWEEPS = 20
+
+
+def some_boxes(rng: np.random.Generator, *names: str) -> Boxes:
+    """Return boxes of these names at random places of a 4 x 3 m room."""
+    n = len(names)
+    quaternion = np.tile([np.sqrt(0.5), 0, 0, np.sqrt(0.5)], (n, 1))
+    return Boxes(
+        names, rng.uniform(0, [4, 3, 1], (n, 3)), np.full((n, 3), 0.1), quaternion
+    )
+
+
+def some_poses(rng: np.random.Generator, n: int) -> pd.DataFrame:
+    """Return poses of all kinds at random places, as a chain that keeps three."""
+    columns = {
+        "sweep": np.arange(n) // 3,
+        "pose": np.arange(n) % 3,
+        "kind": np.array(skeleton.KINDS)[np.arange(n) % 6],
+        **dict(zip(("x_m", "y_m", "z_m"), rng.uniform(0, 3, (3, n)), strict=True)),
+        "yaw_rad": rng.uniform(-np.pi, np.pi, n),
+        "n_objects": rng.integers(1, 5, n),
+    }
+    return pd.DataFrame(columns)
+
+
+@pytest.fixture
+def content() -> SceneRecording:
+    """Return a small scene with something of everything."""
+    rng = np.random.default_rng(0)
+    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], float)
+    candidates = rng.uniform(0, 1, (50, 3))
+    normals = np.tile([0.0, 0.0, 1.0], (900, 1))
+    predicted = some_boxes(rng, "mug1", "book1")
+    labelled = some_boxes(rng, "mug1", "book1")
+    return SceneRecording(
+        *("rooms", "kitchen1", "filled", "dp", 2, 7),
+        points=rng.uniform(0, [4, 3, 2.5], (900, 3)),
+        point_colors=rng.integers(0, 255, (900, 3)).astype(np.uint8),
+        point_normals=normals,
+        areas=(
+            PlacingArea("floor", 4 * square, 0.0, np.inf, True, None),
+            PlacingArea("area1", square, 0.74, np.inf, False, None),
+        ),
+        valid_poses=some_poses(rng, 300),
+        sampled_poses=some_poses(rng, 3 * N_SWEEPS),
+        trace=pd.DataFrame(
+            {
+                "sweep": np.arange(N_SWEEPS),
+                "log_likelihood": rng.normal(size=N_SWEEPS),
+                "n_poses": 3,
+            }
+        ),
+        given=some_boxes(rng, "plate1"),
+        predicted=predicted,
+        labelled=labelled,
+        errors_m=np.linalg.norm(predicted.centers - labelled.centers, axis=1),
+        log_density=np.array([-1.0, -2.5]),
+        densities={c: (candidates, -candidates[:, 0]) for c in ("dishware", "book")},
+        meshes=(
+            Mesh(
+                "mug1", np.eye(3), np.array([[0, 1, 2]]), np.full((1, 4), 9, np.uint8)
+            ),
+        ),
+    )
+
+
+def rerun(*arguments: str | Path) -> subprocess.CompletedProcess:
+    """Run the command line of rerun."""
+    return subprocess.run(
+        [RERUN, "rrd", *arguments], check=False, capture_output=True, timeout=60
+    )
+
+
+def column(path: Path, entity: str, component: str) -> list:
+    """Return the rows of a component of an entity, as Python lists."""
+    rows = []
+    for chunk in RrdReader(path).stream().filter(content=entity):
+        batch = chunk.to_record_batch()
+        if component in batch.schema.names:
+            rows += batch.column(component).to_pylist()
+    return rows
+
+
+def test_a_recording_holds_every_part_of_the_scene(tmp_path, content):
+    path = tmp_path / "kitchen1.rrd"
+    write_recording(path, content)
+    rows = count_rows(path)
+    static = {
+        *("/summary", "/world", "/world/areas", "/world/cloud/room"),
+        *("/world/cloud/front", "/world/density/book", "/world/density/dishware"),
+        *("/world/meshes/mug1", "/world/objects/errors", "/world/objects/given"),
+        *("/world/objects/labelled", "/world/objects/predicted", "/world/poses/valid"),
+    }
+    assert static <= set(rows)
+    for entity in ("/world/poses/joints", "/world/poses/names"):
+        assert rows[entity] == N_SWEEPS
+    for entity in ("/world/poses/limbs", "/diagnostics/log_likelihood"):
+        assert rows[entity] == N_SWEEPS + 1, "one more for the static style"
+    assert rerun("verify", path).returncode == 0
+
+
+def test_sweep_is_the_only_timeline(tmp_path, content):
+    path = tmp_path / "kitchen1.rrd"
+    write_recording(path, content)
+    schema = str(RrdReader(path).store().schema())
+    assert "sweep" in schema
+    assert "log_time" not in schema
+    assert "log_tick" not in schema
+
+
+def test_a_recording_is_named_after_all_that_sets_it_apart(tmp_path, content):
+    path = tmp_path / "kitchen1.rrd"
+    write_recording(path, content)
+    (entry,) = RrdReader(path).recordings()
+    assert entry.recording_id == "rooms-kitchen1-filled-dp-fold2-seed7"
+    assert len(RrdReader(path).blueprints()) == 1
+
+
+def test_the_skeletons_are_where_the_poses_are(tmp_path, content):
+    path = tmp_path / "kitchen1.rrd"
+    write_recording(path, content)
+    rows = column(path, "/world/poses/joints", "Points3D:positions")
+    assert len(rows) == N_SWEEPS
+    pose = content.sampled_poses.iloc[-1]
+    location = pose[["x_m", "y_m", "z_m"]].to_numpy(float)[None]
+    expected = skeleton.place(pose["kind"], location, np.array([pose["yaw_rad"]]))[0]
+    np.testing.assert_allclose(rows[-1][-15:], expected, atol=1e-5)
+
+
+def test_quaternions_are_turned_to_the_order_of_rerun(tmp_path, content):
+    path = tmp_path / "kitchen1.rrd"
+    write_recording(path, content)
+    ((quaternion,),) = column(path, "/world/objects/given", "Boxes3D:quaternions")
+    np.testing.assert_allclose(quaternion, [0, 0, 0.5**0.5, 0.5**0.5], atol=1e-6)
+
+
+def test_the_same_content_gives_the_same_recording(tmp_path, content):
+    a, b, other = (tmp_path / name for name in ("a.rrd", "b.rrd", "other.rrd"))
+    write_recording(a, content)
+    write_recording(b, content)
+    trace = content.trace.assign(log_likelihood=content.trace["log_likelihood"] + 1e-4)
+    write_recording(other, replace(content, trace=trace))
+    assert rerun("compare", "--unordered", a, b).returncode == 0
+    assert rerun("compare", "--unordered", a, other).returncode == 1
+
+
+def test_an_empty_room_without_people_or_predictions_can_be_recorded(tmp_path, content):
+    rng, nobody = np.random.default_rng(0), content.sampled_poses.iloc[:0]
+    nothing = some_boxes(rng)
+    path = tmp_path / "empty.rrd"
+    bare = replace(
+        content,
+        **dict.fromkeys(("given", "predicted", "labelled"), nothing),
+        **dict.fromkeys(("sampled_poses", "valid_poses"), nobody),
+        trace=content.trace.iloc[:0],
+        errors_m=np.zeros(0),
+        log_density=np.zeros(0),
+        point_normals=np.zeros((0, 3)),
+        areas=content.areas[:1],
+        densities={},
+        meshes=(),
+    )
+    write_recording(path, bare)
+    assert rerun("verify", path).returncode == 0
+
+
+def test_a_failed_write_leaves_the_old_recording_and_nothing_else(tmp_path, content):
+    path = tmp_path / "kitchen1.rrd"
+    path.write_bytes(b"old")
+    broken = replace(content, sampled_poses=content.sampled_poses.drop(columns="kind"))
+    with pytest.raises(KeyError):
+        write_recording(path, broken)
+    assert path.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_large_clouds_are_thinned_to_a_file_of_bounded_size(tmp_path, content):
+    rng = np.random.default_rng(0)
+    points = rng.uniform(0, [4, 3, 2.5], (200_000, 3))
+    colors = np.full((200_000, 3), 200, np.uint8)
+    path = tmp_path / "large.rrd"
+    large = replace(
+        content, points=points, point_colors=colors, point_normals=np.zeros((0, 3))
+    )
+    write_recording(path, large)
+    assert path.stat().st_size < 1.5e6
+
+
+def test_the_summary_says_how_far_off_each_object_is_and_what_the_data_are_not(content):
+    text = summary(content)
+    for name, error in zip(content.predicted.names, content.errors_m, strict=True):
+        assert f"| {name} | {error:.2f} |" in text
+    assert "not the data set of the paper" in text

@@ -1,0 +1,213 @@
+"""What every rules file needs: environment, sheet of scenes, flags, source files."""
+
+import ast
+import functools
+import hashlib
+import json
+import os
+import sys
+from pathlib import Path
+
+import yaml
+
+from placing import schema, sheets
+from placing.errors import BadInput, PlacingError, unknown
+
+# Jobs find the Python that runs Snakemake, and get the same numbers on every machine;
+# `run` sets the same for commands that are typed.
+os.environ.update(
+    PATH=f"{Path(sys.executable).parent}{os.pathsep}{os.environ.get('PATH', '')}"
+)
+os.environ.setdefault("NUMBA_CPU_NAME", "generic")
+os.environ.setdefault("NUMBA_CACHE_DIR", str(Path(".cache/numba").absolute()))
+os.environ.setdefault("PYTHONHASHSEED", "0")
+os.environ.setdefault("MPLBACKEND", "Agg")
+
+TASKS = ["filled", "empty"]
+
+
+def schema_of(name):
+    """Return the JSON Schema called `name`."""
+    return yaml.safe_load(Path(f"workflow/schemas/{name}.schema.yaml").read_text())
+
+
+def check_config():
+    """Raise `BadInput` for a value of the configuration that no stage can use."""
+    files = " + ".join(os.path.relpath(file) for file in reversed(workflow.configfiles))
+    schema.check(config, schema_of("config"), files)
+
+
+def checked_scenes():
+    """Return the rows of the sheet of scenes."""
+    sheet = Path("config/scenes.csv")
+    rows = sheets.read_sheet(sheet, schema_of("scenes"), key=("dataset", "scene"))
+    known = sorted(path.stem for path in Path("resources/rooms").glob("*.yaml"))
+    for row in rows:
+        folds = {other["fold"] for other in rows if other["dataset"] == row["dataset"]}
+        if len(folds) < 2:
+            raise BadInput(
+                f"{sheet}: fold: value {row['fold']} in every row of data set"
+                f" {row['dataset']!r}; expected at least two folds"
+            )
+        if row["dataset"] == "rooms" and row["scene"] not in known:
+            raise unknown(f"scene in {sheet}:", row["scene"], known)
+    return rows
+
+
+try:
+    check_config()
+    SCENES = checked_scenes()
+except PlacingError as error:
+    sys.exit(f"Error: {error}")
+
+DATASETS = sorted({row["dataset"] for row in SCENES})
+FOLDS = {
+    dataset: sorted({row["fold"] for row in SCENES if row["dataset"] == dataset})
+    for dataset in DATASETS
+}
+ROOM_SCENES = [row["scene"] for row in SCENES if row["dataset"] == "rooms"]
+ROOM_FILES = [f"resources/rooms/{scene}.yaml" for scene in ROOM_SCENES]
+
+
+wildcard_constraints:
+    dataset="|".join(DATASETS),
+    fold="|".join(sorted({str(row["fold"]) for row in SCENES})),
+    task="|".join(TASKS),
+
+
+def scenes_of(wildcards):
+    """Return the scenes of a data set, of one fold where the job has a fold."""
+    fold = getattr(wildcards, "fold", None)
+    return [
+        row["scene"]
+        for row in SCENES
+        if row["dataset"] == wildcards.dataset and fold in (None, str(row["fold"]))
+    ]
+
+
+def room_files(wildcards):
+    """Return the room files that a job reads; other data sets have none."""
+    if wildcards.dataset != "rooms":
+        return []
+    return [f"resources/rooms/{scene}.yaml" for scene in scenes_of(wildcards)]
+
+
+def every(path, dataset):
+    """Return `path` for every task and fold of a data set."""
+    return sorted(
+        set(expand(path, dataset=dataset, fold=FOLDS.get(dataset, []), task=TASKS))
+    )
+
+
+def checks_of(wildcards):
+    """Return the tables of checks of a data set."""
+    names = {"rooms": ["areas", "arrangements"], "thor": ["areas", "support"]}
+    folder = f"results/{wildcards.dataset}/checks"
+    return [f"{folder}/{name}.csv" for name in names[wildcards.dataset]]
+
+
+def leaves():
+    """Return what the study is for: all that no other stage needs."""
+    paths = [
+        "fold{fold}.csv",
+        "tables/figure6.md",
+        "figures/figure6_{task}.png",
+        "recordings/fold{fold}/{task}/dp",
+        "checks/passed.txt",
+    ]
+    found = [
+        file
+        for dataset in DATASETS
+        for path in paths
+        for file in every(f"results/{{dataset}}/{path}", dataset)
+    ]
+    if ROOM_SCENES:
+        names = ["objects", "rooms", "arrangements"]
+        found += [f"results/rooms/pictures/{name}.png" for name in names]
+    return found
+
+
+def of_every_fold(path):
+    """Return the input function that gives `path` in every fold and task."""
+    return lambda wildcards: every(path, wildcards.dataset)
+
+
+def of_other_folds(path):
+    """Return the input function that gives `path` in the folds one learns from."""
+    return lambda wildcards: [
+        path.format(dataset=wildcards.dataset, fold=fold)
+        for fold in FOLDS[wildcards.dataset]
+        if str(fold) != wildcards.fold
+    ]
+
+
+def flags(*sections, within=""):
+    """Return config sections as the `--section.key value` words of a script."""
+    return [
+        word
+        for section in sections
+        for word in words_of(f"{within}{section}", config[section])
+    ]
+
+
+def words_of(name, value):
+    """Yield the words that give `value` to the flag called `name`."""
+    if isinstance(value, dict):
+        for key, item in value.items():
+            yield from words_of(f"{name}.{key.replace('_', '-')}", item)
+    elif isinstance(value, bool):
+        parent, _, key = name.rpartition(".")
+        yield f"--{name}" if value else f"--{parent}.no-{key}"
+    else:
+        yield f"--{name}"
+        yield from flat(value)
+
+
+def flat(value):
+    """Yield the numbers and words of a value that may be a list of lists."""
+    for item in value if isinstance(value, list) else [value]:
+        if isinstance(item, list):
+            yield from flat(item)
+        else:
+            yield item
+
+
+@functools.cache
+def digest(script):
+    """Return a digest of a script and of every module of this project it imports.
+
+    As a parameter of a rule it makes the jobs of that rule run again when the content
+    of their code has changed, and only then.
+    """
+    found, todo = set(), [f"workflow/scripts/{script}.py"]
+    while todo:
+        path = todo.pop()
+        if path not in found:
+            found.add(path)
+            todo += imports(path)
+    contents = hashlib.sha256()
+    for path in sorted(found):
+        contents.update(Path(path).read_bytes())
+    return contents.hexdigest()[:16]
+
+
+@functools.cache
+def imports(path):
+    """Return the modules of this project that a file imports, also inside functions."""
+    names = set()
+    for node in ast.walk(ast.parse(Path(path).read_text())):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            names |= {f"{node.module}.{alias.name}" for alias in node.names}
+    # Importing `a.b.c` runs `a` and `a.b` first; a name may be a module or in one.
+    parts = [name.split(".") for name in names]
+    modules = {tuple(part[:n]) for part in parts for n in range(1, len(part) + 1)}
+    stems = [
+        Path(folder, *module)
+        for module in modules
+        for folder in ("src", "workflow/scripts")
+    ]
+    files = [stem.with_suffix(".py") for stem in stems]
+    files += [stem / "__init__.py" for stem in stems]
+    return [str(file) for file in files if file.exists()]

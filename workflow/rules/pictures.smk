@@ -1,0 +1,104 @@
+"""What a person looks at: recordings of the arranging, pictures of rooms and objects.
+
+Nothing reads these files but the check that they exist.
+
+OUTPUTS
+
+    results/{dataset}/recordings/fold{fold}/{task}/dp/       {scene}.rrd
+    results/rooms/pictures/                                  objects*, rooms*, arrangements*
+"""
+
+
+rule record_scene:
+    """Record how the objects of the scenes of a fold were arranged."""
+    input:
+        clouds="results/{dataset}/clouds/fold{fold}",
+        scenes="results/{dataset}/scenes/fold{fold}",
+        features="results/{dataset}/features/fold{fold}",
+        arrangements="results/{dataset}/arrangements/{task}/fold{fold}.parquet",
+        poses="results/{dataset}/poses/{task}/fold{fold}.parquet",
+        densities="results/{dataset}/densities/{task}/fold{fold}",
+        scores="results/{dataset}/scores/{task}/fold{fold}.parquet",
+    output:
+        recordings=directory("results/{dataset}/recordings/fold{fold}/{task}/dp"),
+    log:
+        "results/logs/record_scene/{dataset}/{task}/fold{fold}.log",
+    benchmark:
+        "results/benchmarks/record_scene/{dataset}/{task}/fold{fold}.tsv"
+    params:
+        code=digest("record_scene"),
+        method="dp",
+        seed=config["seed"],
+    shell:
+        r"""
+        python workflow/scripts/record_scene.py \
+            --dataset {wildcards.dataset:q} \
+            --fold {wildcards.fold:q} \
+            --task {wildcards.task:q} \
+            --method {params.method:q} \
+            --clouds {input.clouds:q} \
+            --scenes {input.scenes:q} \
+            --features {input.features:q} \
+            --arrangements {input.arrangements:q} \
+            --poses {input.poses:q} \
+            --densities {input.densities:q} \
+            --scores {input.scores:q} \
+            --recordings {output.recordings:q} \
+            --seed {params.seed:q} \
+            2>{log:q}
+        """
+
+
+rule picture_objects:
+    """Draw every object of the catalogue, and all of them on one sheet."""
+    input:
+        catalogue="config/objects.csv",
+    output:
+        pictures=directory("results/rooms/pictures/objects"),
+        sheet="results/rooms/pictures/objects.png",
+    log:
+        "results/logs/picture_objects.log",
+    benchmark:
+        "results/benchmarks/picture_objects.tsv"
+    params:
+        code=digest("picture_objects"),
+    shell:
+        r"""
+        python workflow/scripts/picture_objects.py \
+            --catalogue {input.catalogue:q} \
+            --pictures {output.pictures:q} \
+            --contact-sheet {output.sheet:q} \
+            2>{log:q}
+        """
+
+
+rule picture_rooms:
+    """Draw every room, bare and as every labeller arranged it."""
+    input:
+        rooms=ROOM_FILES,
+        room_schema="workflow/schemas/room.schema.yaml",
+        catalogue="config/objects.csv",
+    output:
+        rooms=directory("results/rooms/pictures/rooms"),
+        arrangements=directory("results/rooms/pictures/arrangements"),
+        sheet_rooms="results/rooms/pictures/rooms.png",
+        sheet_arrangements="results/rooms/pictures/arrangements.png",
+    log:
+        "results/logs/picture_rooms.log",
+    benchmark:
+        "results/benchmarks/picture_rooms.tsv"
+    params:
+        code=digest("picture_rooms"),
+        scenes=ROOM_SCENES,
+    shell:
+        r"""
+        python workflow/scripts/picture_rooms.py \
+            --rooms resources/rooms \
+            --scenes {params.scenes:q} \
+            --schema {input.room_schema:q} \
+            --catalogue {input.catalogue:q} \
+            --pictures results/rooms/pictures \
+            --sheet-rooms {output.sheet_rooms:q} \
+            --sheet-arrangements {output.sheet_arrangements:q} \
+            2>{log:q}
+        """

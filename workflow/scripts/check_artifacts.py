@@ -1,0 +1,130 @@
+"""Check the artifacts of a data set against claims, each a function of this file."""
+
+import csv
+import logging
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from command import run
+from placing.artifacts.formats import read_json, read_table
+from placing.errors import BadArtifact
+from placing.metrics import ERRORS, SCORE_COLUMNS
+
+log = logging.getLogger(__name__)
+
+TASKS = ("filled", "empty")
+METHODS = ("dp", "height", "room")
+MOST_LINES = 20
+"""So many broken claims are listed; the others are counted."""
+
+Folds = dict[str, int]
+"""The fold of every scene of the data set."""
+
+
+def main(dataset: str, scenes_sheet: Path, results: Path, passed: Path) -> None:
+    """Write the claims that hold, or fail with a line for each that does not.
+
+    Args:
+        dataset: Data set whose artifacts are checked.
+        scenes_sheet: Sheet of all scenes.
+        results: Directory of the results of the data set.
+        passed: Text to write.
+    """
+    folds = folds_of(scenes_sheet, dataset)
+    broken = [
+        f"{claim.__name__}: {line}"
+        for claim in CLAIMS
+        for line in claim(results, folds)
+    ]
+    if broken:
+        left = len(broken) - MOST_LINES
+        more = [f"and {left} more"] if left > 0 else []
+        raise BadArtifact("\n".join([*broken[:MOST_LINES], *more]))
+    passed.parent.mkdir(parents=True, exist_ok=True)
+    passed.write_text("".join(f"{claim.__name__}\n" for claim in CLAIMS))
+    log.info("%s: %d claims hold", dataset, len(CLAIMS))
+
+
+def folds_of(sheet: Path, dataset: str) -> Folds:
+    """Return the fold of every scene of a data set."""
+    with sheet.open(newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["dataset"] == dataset]
+    return {row["scene"]: int(row["fold"]) for row in rows}
+
+
+def scores_of(results: Path, folds: Folds) -> pd.DataFrame:
+    """Return the scores of all tasks and folds."""
+    paths = [
+        results / "scores" / task / f"fold{fold}.parquet"
+        for task in TASKS
+        for fold in sorted(set(folds.values()))
+    ]
+    tables = [read_table(path, SCORE_COLUMNS) for path in paths]
+    return pd.concat(tables, ignore_index=True)
+
+
+def every_scene_is_scored_in_both_tasks(results: Path, folds: Folds) -> Iterator[str]:
+    """Yield the scenes and tasks without a score."""
+    scores = scores_of(results, folds)
+    scored = set(zip(scores["scene"], scores["task"], strict=True))
+    for scene in sorted(folds):
+        for task in TASKS:
+            if (scene, task) not in scored:
+                yield f"{scene} has no {task} score"
+
+
+def errors_are_lengths(results: Path, folds: Folds) -> Iterator[str]:
+    """Yield the placed objects whose errors are negative or not finite."""
+    scores = scores_of(results, folds)
+    placed = scores[scores["status"] == "placed"]
+    for name in ERRORS:
+        values = placed[name].to_numpy(float)
+        for row in placed[~(np.isfinite(values) & (values >= 0))].itertuples():
+            yield f"{row.scene} {row.task} {row.method} {row.object}: {name}"
+
+
+def unplaced_objects_have_no_error(results: Path, folds: Folds) -> Iterator[str]:
+    """Yield the objects without a place that have an error nevertheless."""
+    scores = scores_of(results, folds)
+    unplaced = scores[scores["status"] != "placed"]
+    for row in unplaced[unplaced[list(ERRORS)].notna().any(axis=1)].itertuples():
+        yield f"{row.scene} {row.task} {row.method} {row.object}: {row.status}"
+
+
+def no_scene_is_arranged_by_what_was_learned_from_it(
+    results: Path, folds: Folds
+) -> Iterator[str]:
+    """Yield the scenes that a fold learned from although they are of that fold."""
+    for fold in sorted(set(folds.values())):
+        for method in METHODS:
+            path = results / "theta" / f"fold{fold}" / f"{method}.json"
+            training = read_json(path)["training_scenes"]
+            own = [scene for scene in training if folds.get(scene) in (None, fold)]
+            for scene in own:
+                yield f"{path} learned from {scene}"
+
+
+def every_scene_has_recordings(results: Path, folds: Folds) -> Iterator[str]:
+    """Yield the recordings that are missing or empty."""
+    for scene, fold in sorted(folds.items()):
+        for task in TASKS:
+            folder = results / "recordings" / f"fold{fold}" / task / "dp"
+            path = folder / f"{scene}.rrd"
+            if not path.exists() or path.stat().st_size == 0:
+                yield f"{path} is missing or empty"
+
+
+CLAIMS: tuple[Callable[[Path, Folds], Iterator[str]], ...] = (
+    every_scene_is_scored_in_both_tasks,
+    errors_are_lengths,
+    unplaced_objects_have_no_error,
+    no_scene_is_arranged_by_what_was_learned_from_it,
+    every_scene_has_recordings,
+)
+
+
+if __name__ == "__main__":
+    run(main)
