@@ -5,6 +5,7 @@ import pandas as pd
 
 from placing import skeleton
 from placing.answering import Answer
+from placing.dpmm import Chain
 from placing.human import HumanPoses
 from placing.tasks import Question
 
@@ -25,19 +26,18 @@ POSE_COLUMNS = [
 
 def placement_rows(
     scene: str, task: str, method: str, question: Question, answer: Answer
-) -> pd.DataFrame:
+) -> list[tuple[object, ...]]:
     """Return one row per wanted object; an object without a place has no pose."""
-    rows = []
+    rows: list[tuple[object, ...]] = []
     for item, placement in answer.placements:
         named = (scene, task, method, question.name, question.labels)
-        row = [*named, item.object_id, item.category]
+        row = (*named, item.object_id, item.category)
         if placement is None:
-            row += [NO_PLACE, "", *[np.nan] * 7]
+            rows.append((*row, NO_PLACE, "", *[np.nan] * 7))
         else:
-            pose = [*placement.location, *placement.orientation]
-            row += [PLACED, placement.area, *pose]
-        rows.append(row)
-    return pd.DataFrame(rows, columns=PLACEMENT_COLUMNS)
+            pose = (*placement.location, *placement.orientation)
+            rows.append((*row, PLACED, placement.area, *pose))
+    return rows
 
 
 def pose_rows(
@@ -45,26 +45,21 @@ def pose_rows(
     task: str,
     method: str,
     question: Question,
-    answer: Answer,
+    chain: Chain,
     poses: HumanPoses,
 ) -> pd.DataFrame:
     """Return one row per sample and pose in use, poses numbered by object count."""
-    if answer.chain is None:
-        return pd.DataFrame(columns=POSE_COLUMNS)
-    rows = []
-    for sample, (choice, pose) in enumerate(
-        zip(answer.chain.choice, answer.chain.pose, strict=True)
-    ):
-        _, first, n_objects = np.unique(choice, return_index=True, return_counts=True)
-        order = np.argsort(-n_objects, kind="stable")
-        for number, k in enumerate(order):
-            h = pose[first[k]]
-            kind = skeleton.KINDS[poses.kind[h]]
-            at = [*poses.location[h], poses.yaw[h]]
-            log_joint = answer.chain.log_joint[sample]
-            rows.append([sample, number, kind, *at, n_objects[k], log_joint])
-    table = pd.DataFrame(rows, columns=POSE_COLUMNS[4:])
-    named = {"scene": scene, "task": task, "method": method, "question": question.name}
-    return pd.concat(
-        [pd.DataFrame(named, index=table.index), table], axis=1, copy=False
-    )
+    n_samples, n_objects = chain.choice.shape
+    sample = np.repeat(np.arange(n_samples), n_objects)
+    key = sample * n_objects + chain.choice.ravel()
+    _, first, members = np.unique(key, return_index=True, return_counts=True)
+    order = np.lexsort((first, -members, sample[first]))
+    first, members = first[order], members[order]
+    of_sample, h = sample[first], chain.pose.ravel()[first]
+    starts = np.searchsorted(of_sample, np.arange(n_samples))
+    x, y, z = poses.location[h].T
+    columns = [scene, task, method, question.name, of_sample]
+    columns += [np.arange(len(h)) - starts[of_sample]]
+    columns += [np.array(skeleton.KINDS)[poses.kind[h]], x, y, z, poses.yaw[h]]
+    columns += [members, chain.log_joint[of_sample]]
+    return pd.DataFrame(dict(zip(POSE_COLUMNS, columns, strict=True)))

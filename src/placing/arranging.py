@@ -30,8 +30,8 @@ class ArrangingConfig:
 
     radius_m: float
     """An object further than this from a person is not used by that person."""
-    stride: int
-    """Every how many steps of the lattice, in x and in y, Z(h) adds up a place."""
+    row_spacing_m: float
+    """Lattice on which Z(h) adds up places; places and poses lie on multiples of it."""
 
 
 class UseOfObject:
@@ -46,30 +46,41 @@ class UseOfObject:
         half_height_m: float,
         config: ArrangingConfig,
     ) -> None:
-        """Tabulate the potential on the lattice that places and poses share.
+        """Keep places and poses as cells of the lattice that both lie on.
 
         `half_height_m` lifts the centre of the object above its place.
         """
         self.theta, self.poses, self.n_places = theta, poses, len(candidates.location)
+        self._spacing, self._config = spacing_m, config
         self._cells = _cells(candidates.location, spacing_m)
         self._pose_cells = _cells(poses.location, spacing_m)
-        n_headings = _n_headings(poses.yaw)
-        self._heading = np.round(poses.yaw / (2 * np.pi) * n_headings).astype(np.int64)
-        self._table = planar_table(theta, spacing_m, config.radius_m, n_headings)
+        self._n_headings = _n_headings(poses.yaw)
+        turn = poses.yaw / (2 * np.pi) * self._n_headings
+        self._heading = np.round(turn).astype(np.int64)
+        self._table = self._table_of(spacing_m)
         levels, self._level = np.unique(candidates.location[:, 2], return_inverse=True)
         z, self._reference = np.unique(poses.references()[:, 2], return_inverse=True)
         self._height = height_factor(theta, levels + half_height_m, z)
-        is_coarse = (self._cells % config.stride == 0).all(1)
-        self._coarse = np.flatnonzero(is_coarse)
 
     def row(self) -> Array:
-        """Return Z of every pose up to a common factor, shape (q,)."""
+        """Return Z of every pose up to a common factor, shape (q,).
+
+        Places above each other share a cell, weighted by their heights.
+        """
+        stride = round(self._config.row_spacing_m / self._spacing)
+        kept = (self._cells % stride == 0).all(1)
+        cells, level = self._cells[kept] // stride, self._level[kept]
+        if len(cells) == 0 or (self._pose_cells % stride).any():
+            raise ValueError("places and poses must lie on multiples of row_spacing_m")
+        low, spans = cells.min(0), np.ptp(cells, axis=0) + 1
+        flat = np.ravel_multi_index((cells - low).T, spans)
+        grids = np.stack(
+            [np.bincount(flat, w[level], spans.prod()) for w in self._height.T]
+        )
         return _add_up(
-            self._table,
-            self._height,
-            self._cells[self._coarse],
-            self._level[self._coarse],
-            self._pose_cells,
+            self._table_of(self._config.row_spacing_m),
+            grids.reshape(-1, *spans).astype(np.float32),
+            self._pose_cells // stride - low,
             self._heading,
             self._reference,
         )
@@ -105,6 +116,11 @@ class UseOfObject:
         psi_ori = np.exp(log_psi_ori(self.theta, yaws[:, None], self.poses.yaw[used]))
         return float(yaws[np.argmax(psi_ori @ near)])
 
+    def _table_of(self, spacing_m: float) -> NDArray[np.float32]:
+        """Return the planar part of Psi_loc on a lattice."""
+        radius = self._config.radius_m
+        return planar_table(self.theta, spacing_m, radius, self._n_headings)
+
 
 def _cells(location: Array, spacing_m: float) -> NDArray[np.int64]:
     """Return the lattice numbers of points of the lattice, shape (n, 2)."""
@@ -118,18 +134,30 @@ def _n_headings(yaw: Array) -> int:
 
 
 @njit(cache=True)
-def _add_up(table, height, cells, level, pose_cells, heading, reference):  # noqa: ANN001, ANN202
-    """Return the sum of Psi_loc over the places for every pose, shape (q,)."""
+def _add_up(table, grids, pose_cells, heading, reference):  # noqa: ANN001, ANN202
+    """Return the sum of Psi_loc over a grid of weighted places per pose, shape (q,).
+
+    Columns add up side by side, which vectorises and keeps the order of the sums.
+    """
+    n_x, n_y = grids.shape[1:]
     width = table.shape[1]
     half = width // 2
-    row = np.zeros(len(pose_cells))
+    row = np.empty(len(pose_cells))
+    column = np.empty(n_y, np.float32)
     for h in range(len(pose_cells)):
-        x0, y0 = half - pose_cells[h, 0], half - pose_cells[h, 1]
-        planar = table[heading[h]]
-        for p in range(len(cells)):
-            i, j = cells[p, 0] + x0, cells[p, 1] + y0
-            if 0 <= i < width and 0 <= j < width:
-                row[h] += planar[i, j] * height[level[p], reference[h]]
+        x, y = half - pose_cells[h, 0], half - pose_cells[h, 1]
+        first, last = max(0, -y), min(n_y, width - y)
+        column[:] = 0
+        part = column[first:last]
+        for i in range(max(0, -x), min(n_x, width - x)):
+            planar = table[heading[h], i + x, first + y : last + y]
+            weight = grids[reference[h], i, first:last]
+            for j in range(len(part)):
+                part[j] += weight[j] * planar[j]
+        total = 0.0
+        for j in range(n_y):
+            total += column[j]
+        row[h] = total
     return row
 
 

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 from scipy import ndimage
 from shapely import distance, points
@@ -98,18 +99,22 @@ def is_unoccupied(
 
     `boxes` (n, 7) = centre, size and yaw of the given objects.
     """
-    free = np.ones(len(candidates.location), np.bool_)
     reach = min(item.size_m[:2]) / 2
-    z = candidates.location[:, 2]
+    return _is_clear(candidates.location, boxes, reach, item.size_m[2])
+
+
+@njit(cache=True)
+def _is_clear(places, boxes, reach, height):  # noqa: ANN001, ANN202
+    """Return at which places a cylinder of this radius and height hits no box, (p,)."""
+    free = np.ones(len(places), np.bool_)
     for box in boxes:
-        offset = candidates.location[:, :2] - box[:2]
         cos, sin = np.cos(box[6]), np.sin(box[6])
-        along, across = (offset @ np.array([[cos, -sin], [sin, cos]])).T
-        is_beside = np.abs(along) >= box[3] / 2 + reach
-        is_beside |= np.abs(across) >= box[4] / 2 + reach
-        is_above = z >= box[2] + box[5] / 2
-        is_below = z + item.size_m[2] <= box[2] - box[5] / 2
-        free &= is_beside | is_above | is_below
+        bottom, top = box[2] - box[5] / 2, box[2] + box[5] / 2
+        for p in range(len(places)):
+            dx, dy, z = places[p, 0] - box[0], places[p, 1] - box[1], places[p, 2]
+            overlaps = abs(cos * dx + sin * dy) < box[3] / 2 + reach
+            overlaps &= abs(cos * dy - sin * dx) < box[4] / 2 + reach
+            free[p] &= not (overlaps and z < top and z + height > bottom)
     return free
 
 

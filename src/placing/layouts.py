@@ -3,10 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-import yaml
-
 from placing.rooms import reader as rooms
-from placing.rooms.catalogue import read_catalogue
 from placing.scene import Layout
 from placing.thor import reader as thor
 from placing.thor.data import find_data, read_data
@@ -22,7 +19,6 @@ def layout_reader(
     `thor` are scenes of the installed designers' rooms, mapped by `types`.
     """
     if dataset == "rooms":
-        objects, room = read_catalogue(catalogue), yaml.safe_load(schema.read_text())
-        return lambda name: rooms.read_layout(folder / f"{name}.yaml", objects, room)
+        return rooms.layout_reader(folder, schema, catalogue)
     data, thor_types = read_data(find_data()), read_types(types)
     return lambda name: thor.read_layout(data, name, thor_types)

@@ -13,6 +13,7 @@ Shapes: n objects, q human poses.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numba import njit
@@ -100,13 +101,15 @@ def _fill(logs, objects, has_front, poses, theta, log_loc, log_ori):  # noqa: AN
             logs[i, k] = log_psi
 
 
+@lru_cache(maxsize=64)
 def planar_table(
     theta: Theta, spacing_m: float, radius_m: float, n_headings: int
 ) -> NDArray[np.float32]:
     """Return the planar part of Psi_loc on a lattice, shape (n_headings, w, w).
 
     Entry [a, i, j] belongs to a pose that looks along heading a and a displacement of
-    ((i, j) - (w - 1) / 2) * spacing; displacements beyond `radius_m` have none.
+    ((i, j) - (w - 1) / 2) * spacing; displacements beyond `radius_m` have none. The
+    table is kept, as all scenes of a fold ask for the same ones: do not write to it.
     """
     half = round(radius_m / spacing_m)
     steps = np.arange(-half, half + 1) * spacing_m

@@ -1,11 +1,11 @@
-"""Checks of what people write (configuration, sheets) against a JSON Schema.
+"""Checks of what people write (configuration, sheets, rooms) against a JSON Schema.
 
 The complaint is one line for one mistake: the file, the field, its value and what was
 expected there, in words rather than in the keywords of JSON Schema.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from jsonschema import Draft202012Validator, ValidationError
@@ -28,6 +28,9 @@ BOUNDS = {
 }
 """How the limits of a schema read in a sentence."""
 
+NAMES = ("id", "labeller")
+"""Keys whose value names an item of a list better than its number does."""
+
 # JSON Schema takes 5.0 for an integer, and the commands that get the value do not.
 Validator = extend(
     Draft202012Validator,
@@ -44,7 +47,8 @@ def check(document: object, schema: dict[str, Any], file: str) -> None:
             raise BadInput(f"{file}: {field}: value {value}; expected a finite number")
     error = best_match(Validator(schema).iter_errors(document))
     if error is not None:
-        raise BadInput(f"{file}: {_complaint(error)}")
+        field = _field(document, error.absolute_path)
+        raise BadInput(f"{file}: {field and f'{field}: '}{_complaint(error)}")
 
 
 def _numbers(document: object, field: str) -> Iterator[tuple[str, float]]:
@@ -59,19 +63,33 @@ def _numbers(document: object, field: str) -> Iterator[tuple[str, float]]:
         yield field, document
 
 
+def _field(document: Any, keys: Iterable[str | int]) -> str:  # noqa: ANN401
+    """Return a field as `furniture[desk1].size_m[0]`, the document itself as ``."""
+    field = ""
+    for key in keys:
+        document = document[key]
+        field += f"[{_name(document, key)}]" if isinstance(key, int) else f".{key}"
+    return field.removeprefix(".")
+
+
+def _name(item: object, number: int) -> str:
+    """Return what an item of a list calls itself if that can be printed."""
+    values = [item.get(name) for name in NAMES] if isinstance(item, dict) else []
+    names = [v for v in values if isinstance(v, str) and v.isprintable()]
+    return names[0][:60] if names else str(number)
+
+
 def _complaint(error: ValidationError) -> str:
-    """Return field, value and expectation of one mistake."""
-    field = error.json_path.removeprefix("$").removeprefix(".")
-    prefix = f"{field}: " if field else ""
+    """Return value and expectation of one mistake."""
     schema = error.schema if isinstance(error.schema, dict) else {}
     keys = list(error.instance) if isinstance(error.instance, dict) else []
     if error.validator == "required":
         missing = [key for key in schema["required"] if key not in keys]
-        return f"{prefix}key {missing[0]!r} is missing; expected {_one_of(schema)}"
+        return f"key {missing[0]!r} is missing; expected {_one_of(schema)}"
     if error.validator == "additionalProperties":
         extra = [key for key in keys if key not in schema["properties"]]
-        return f"{prefix}unknown key {extra[0]!r}; expected {_one_of(schema)}"
-    return f"{prefix}value {_short(error.instance)}; expected {_expected(schema)}"
+        return f"unknown key {_short(extra[0])}; expected {_one_of(schema)}"
+    return f"value {_short(error.instance)}; expected {_expected(schema)}"
 
 
 def _one_of(schema: dict[str, Any]) -> str:

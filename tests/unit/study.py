@@ -3,7 +3,6 @@
 import numpy as np
 
 from placing import rigid
-from placing.answering import Settings
 from placing.arranging import ArrangingConfig
 from placing.baselines import BaselinesConfig
 from placing.candidates import Candidates, CandidatesConfig, find_candidates
@@ -12,11 +11,12 @@ from placing.decision import DecisionConfig
 from placing.dpmm import DpmmConfig
 from placing.human import HumanPoses, PosesConfig, valid_poses
 from placing.scene import Arrangement, Placement, PlacingArea, Scene, SceneObject
+from placing.scene_model import Settings
 
 SETTINGS = Settings(
     CandidatesConfig(0.05, 8, 0.7, 0.05),
     DpmmConfig(1.0, 8, 20, 60),
-    ArrangingConfig(4.0, 2),
+    ArrangingConfig(4.0, 0.1),
     DecisionConfig(0.2, 0.25),
     BaselinesConfig(0.05, 0.05, 0.1, 0.2, 3.0, 1.0),
 )

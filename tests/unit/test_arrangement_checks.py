@@ -1,7 +1,10 @@
 """A placement that is not possible is named with its reason."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+import yaml
 
 from placing import rigid
 from placing.physics.arrangements import (
@@ -12,7 +15,8 @@ from placing.physics.arrangements import (
 from placing.physics.settling import SettleConfig
 from placing.scene import Arrangement, Furniture, Layout, Placement, SceneObject
 
-CONFIG = SettleConfig()
+STUDY = Path(__file__).parents[2] / "config" / "config.yaml"
+CONFIG = SettleConfig(**yaml.safe_load(STUDY.read_text())["settling"])
 BOOK_M = (0.24, 0.17, 0.03)
 DESK_TOP_M = 0.74
 

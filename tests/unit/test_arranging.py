@@ -26,8 +26,8 @@ def scene():
     return candidates, HumanPoses(kind, place, yaw, np.full(50, 1 / 50))
 
 
-def use_of(scene, stride=1):
-    config = ArrangingConfig(5.0, stride)
+def use_of(scene, row_spacing_m=0.05):
+    config = ArrangingConfig(5.0, row_spacing_m)
     return UseOfObject(THETA, *scene, 0.05, HALF_HEIGHT, config)
 
 
@@ -43,11 +43,11 @@ def test_row_is_the_sum_over_places(scene):
     np.testing.assert_allclose(use_of(scene).row(), direct(scene).sum(0), rtol=1e-4)
 
 
-def test_stride_sums_the_places_of_the_coarser_lattice(scene):
+def test_row_spacing_sums_the_places_of_the_coarser_lattice(scene):
     cells = np.round(scene[0].location[:, :2] / 0.05)
     coarse = (cells % 2 == 0).all(1)
     expected = direct(scene)[coarse].sum(0)
-    np.testing.assert_allclose(use_of(scene, 2).row(), expected, rtol=1e-4)
+    np.testing.assert_allclose(use_of(scene, 0.1).row(), expected, rtol=1e-4)
 
 
 def test_density_mixes_the_normalised_potentials_of_the_poses(scene):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter
 
 from placing.candidates import FEATURES, Candidates
 from placing.decision import DecisionConfig, Smoother, choose_places
@@ -61,3 +62,14 @@ def test_an_object_that_fits_nowhere_gets_no_place(table):
         np.random.default_rng(0), np.ones(441), [nowhere], table, CONFIG
     )
     assert chosen == [None]
+
+
+def test_smoothing_is_a_gaussian_filter_of_what_lies_on_the_area(table):
+    density = np.random.default_rng(0).random(441)
+    sigma = 0.2 / 0.05
+    grid, mask = density.reshape(21, 21), np.ones((21, 21))
+    filtered, share = (
+        gaussian_filter(g, sigma, mode="constant", truncate=3.0) for g in (grid, mask)
+    )
+    smooth = Smoother(table, 0.05, 0.2)(density)
+    np.testing.assert_allclose(smooth, (filtered / share).ravel(), rtol=1e-9)

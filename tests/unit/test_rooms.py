@@ -90,10 +90,16 @@ def test_an_object_without_level_is_on_the_highest_one_below_it(tmp_path: Path) 
 
 
 MISTAKES = {
-    "kind: office\n": ("kind: cave\n", "kind is 'cave', expected one of"),
+    "kind: office\n": ("kind: cave\n", "kind: value 'cave'; expected one of"),
     "scene: den": ("scene: lair", "scene is 'lair', expected 'den'"),
-    "height_m: 2.5": ("height_m: 1.5", "height_m is 1.5, expected at least 2"),
-    "size_m: [0.8, 1.6": ("size_m: [0.8, big", "furniture[desk1].size_m[1] is 'big'"),
+    "height_m: 2.5": (
+        "height_m: 1.5",
+        "height_m: value 1.5; expected number at least 2",
+    ),
+    "size_m: [0.8, 1.6": (
+        "size_m: [0.8, big",
+        "furniture[desk1].size_m[1]: value 'big'; expected number",
+    ),
     "yaw_deg: 30}": ("yaw_deg: .inf}", ".inf is not a finite number"),
     "habit: tidy": ("habit: tidy\n    habit: tall", "key 'habit' is given twice"),
     "[[0, 0], [4, 0]": ("[[4, 0], [0, 0]", "expected a polygon that is simple"),
@@ -120,8 +126,14 @@ MISTAKES = {
     "position_m: [3, 1]": ("position_m: [5, 1]", "is [5, 1], expected it inside the"),
     "[2.02, 2.5]": ("[2.4, 2.5]", "is [2.4, 2.5], expected it above what book1 offers"),
     "book1: {on: desk1": ("book1: {on: mug1", "carry each other in a circle"),
-    "stance: edge": ("stance: head", "placements.book2.stance is 'head', expected one"),
-    "habit: tidy\n": ("habit: tidy\n    mood: 1\n", "'mood' was unexpected"),
+    "stance: edge": (
+        "stance: head",
+        "arrangements[ada].placements.book2.stance: value 'head'; expected one of",
+    ),
+    "habit: tidy\n": (
+        "habit: tidy\n    mood: 1\n",
+        "arrangements[ada]: unknown key 'mood'; expected the keys habit, labeller",
+    ),
 }
 
 

@@ -24,6 +24,13 @@ SCHEMA = {
             "additionalProperties": False,
             "properties": {"alpha": {"$ref": "#/$defs/positive"}},
         },
+        "people": {
+            "type": "array",
+            "items": {
+                "type": "object",
+                "properties": {"height_m": {"type": "number"}},
+            },
+        },
         "either": {"anyOf": [{"type": "integer"}, {"const": "auto"}]},
     },
     "$defs": {"positive": {"type": "number", "exclusiveMinimum": 0}},
@@ -68,6 +75,22 @@ def test_a_mistake_is_named(changes, said):
     assert complaint({"seed": 1} | changes).startswith(f"config.yaml: {said}")
 
 
+@pytest.mark.parametrize(
+    ("person", "name"),
+    [
+        ({"id": "ada"}, "ada"),
+        ({"labeller": "bob"}, "bob"),
+        ({"id": 7}, "0"),
+        ({"id": "a\nb"}, "0"),
+        ({}, "0"),
+    ],
+)
+def test_an_item_of_a_list_is_called_by_its_name_if_it_has_one(person, name):
+    said = complaint({"seed": 1, "people": [person | {"height_m": "tall"}]})
+    expected = "value 'tall'; expected number"
+    assert said == f"config.yaml: people[{name}].height_m: {expected}"
+
+
 def test_a_missing_key_is_named():
     assert complaint({}).startswith("config.yaml: key 'seed' is missing; expected")
 
@@ -78,8 +101,9 @@ def test_numbers_that_are_not_finite_are_refused_wherever_they_are(value):
     assert said == f"config.yaml: crop_m[1]: value {value}; expected a finite number"
 
 
-def test_a_complaint_is_one_line_of_bounded_length():
-    said = complaint({"seed": 1, "kind": "office\n" * 1000})
+@pytest.mark.parametrize("changes", [{"kind": "a\n" * 1000}, {"a\n" * 1000: 1}])
+def test_a_complaint_is_one_line_of_bounded_length(changes):
+    said = complaint({"seed": 1} | changes)
     assert "\n" not in said
     assert len(said) < 200
 

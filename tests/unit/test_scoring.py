@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 from study import study
 
-from placing.answer_tables import NO_PLACE, placement_rows
+from placing.answer_tables import NO_PLACE, PLACEMENT_COLUMNS, placement_rows
 from placing.answering import Answer
 from placing.scene import Placement
 from placing.scoring import LABELS, ScoringConfig, density_key, score_scene
@@ -29,11 +29,11 @@ def score(parts, task, placed_by):
     for question in questions(scene, task):
         placements = tuple((o, by_object[o.object_id]) for o in question.wanted)
         answer = Answer(placements, {}, None)
-        rows.append(placement_rows(scene.scene, task, "copy", question, answer))
+        rows += placement_rows(scene.scene, task, "copy", question, answer)
         for item in question.wanted:
             key = density_key("copy", question.name, item.category)
             densities[key] = np.full(n, 1 / n)
-    answers = pd.concat(rows, ignore_index=True)
+    answers = pd.DataFrame(rows, columns=PLACEMENT_COLUMNS)
     return (
         answers,
         densities,

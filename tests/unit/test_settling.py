@@ -3,10 +3,12 @@
 from dataclasses import replace
 from functools import cache
 from math import pi, sqrt
+from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
+import yaml
 
 from placing import rigid
 from placing.physics.bodies import body_of, fixed_pieces
@@ -15,7 +17,8 @@ from placing.shapes.appliances import slot_centres
 from placing.shapes.furniture import furniture_shape
 from placing.shapes.objects import object_shape
 
-CONFIG = SettleConfig()
+STUDY = Path(__file__).parents[2] / "config" / "config.yaml"
+CONFIG = SettleConfig(**yaml.safe_load(STUDY.read_text())["settling"])
 TOP_M = 0.7
 BOOK_M = (0.16, 0.22, 0.03)
 

@@ -61,6 +61,7 @@ rule settle_arrangements:
     params:
         code=digest("settle_arrangements"),
         scenes=ROOM_SCENES,
+        settling=flags("settling"),
     shell:
         r"""
         python workflow/scripts/settle_arrangements.py \
@@ -69,6 +70,7 @@ rule settle_arrangements:
             --schema {input.room_schema:q} \
             --catalogue {input.catalogue:q} \
             --checks {output.checks:q} \
+            {params.settling:q} \
             2>{log:q}
         """
 

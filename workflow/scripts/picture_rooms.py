@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, cast
 
 import numpy as np
 from tqdm import tqdm
@@ -10,47 +9,42 @@ from trimesh import Trimesh
 
 from command import run
 from placing.dressing import WALLS, meshes_of, object_meshes
-from placing.errors import unknown
 from placing.pictures.cameras import Camera
 from placing.pictures.labels import labelled, sheet
 from placing.pictures.renderer import Picture, render, write_picture
 from placing.pictures.rooms import anchor_of, cut_away, room_camera, seen_furniture
-from placing.rooms.catalogue import read_catalogue
-from placing.rooms.file import read_yaml
-from placing.rooms.reader import read_layout
+from placing.rooms.reader import layout_reader
 from placing.scene import Layout
 
 COLUMNS, TILE = 4, (480, 360)
-SCHEMA = Path(__file__).parents[1] / "schemas" / "room.schema.yaml"
 
 
 def main(
     rooms: Path,
+    scenes: tuple[str, ...],
+    schema: Path,
     catalogue: Path,
     pictures: Path,
     sheet_rooms: Path,
     sheet_arrangements: Path,
-    scenes: tuple[str, ...] = (),
     size: tuple[int, int] = (1200, 900),
-    schema: Path = SCHEMA,
 ) -> None:
     """Draw pictures of rooms and of their labelled arrangements, and sheets of both.
 
     Args:
         rooms: Directory of room files.
+        scenes: Rooms to draw.
+        schema: JSON Schema of room files.
         catalogue: Table of objects.
         pictures: Directory whose `rooms` and `arrangements` are written.
         sheet_rooms: PNG to write with all rooms.
         sheet_arrangements: PNG to write with all arrangements.
-        scenes: Rooms to draw; all of the directory if left out.
         size: Width and height of a picture.
-        schema: JSON Schema of room files.
     """
-    objects, rules = read_catalogue(catalogue), cast(dict[str, Any], read_yaml(schema))
-    paths = [path_of(rooms, scene) for scene in scenes] or sorted(rooms.glob("*.yaml"))
+    read = layout_reader(rooms, schema, catalogue)
     empty, filled = {}, {}
-    for path in tqdm(paths, unit="room", disable=None):
-        layout = read_layout(path, objects, rules)
+    for scene in tqdm(scenes, unit="room", disable=None):
+        layout = read(scene)
         drawn = pictures_of(layout, size)
         empty[layout.scene] = drawn.pop(layout.scene)
         filled |= drawn
@@ -85,14 +79,6 @@ def picture_of(
     anchors = np.array([anchor_of(mesh) for mesh in named.values()]).reshape(-1, 3)
     points = dict(zip(named, camera.project(anchors, size), strict=True))
     return labelled(render(meshes, camera, size), points)
-
-
-def path_of(rooms: Path, scene: str) -> Path:
-    """Return the file of a room that exists."""
-    known = {path.stem: path for path in rooms.glob("*.yaml")}
-    if scene not in known:
-        raise unknown(f"scene of {rooms}", scene, list(known))
-    return known[scene]
 
 
 if __name__ == "__main__":

@@ -3,14 +3,13 @@
 import logging
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any, cast
 
 import pandas as pd
 from tqdm import tqdm
 
 from command import run
 from placing.artifacts.atomic import replacing
-from placing.errors import BadInput, unknown
+from placing.errors import BadInput
 from placing.physics.arrangements import (
     PlacementCheck,
     bodies_of,
@@ -18,36 +17,32 @@ from placing.physics.arrangements import (
     complaints_about,
 )
 from placing.physics.settling import SettleConfig
-from placing.rooms.catalogue import read_catalogue
-from placing.rooms.file import read_yaml
-from placing.rooms.reader import read_layout
+from placing.rooms.reader import layout_reader
 
 log = logging.getLogger(__name__)
 MOST_LINES = 20
-SCHEMA = Path(__file__).parents[1] / "schemas" / "room.schema.yaml"
 
 
 def main(
     rooms: Path,
+    scenes: tuple[str, ...],
+    schema: Path,
     catalogue: Path,
     checks: Path,
-    scenes: tuple[str, ...] = (),
-    schema: Path = SCHEMA,
-    settling: SettleConfig = SettleConfig(),  # noqa: B008  frozen
+    settling: SettleConfig,
 ) -> None:
     """Settle the labelled arrangements of rooms and write a line for each placement.
 
     Args:
         rooms: Directory of room files.
+        scenes: Rooms to check.
+        schema: JSON Schema of room files.
         catalogue: Table of objects.
         checks: Table to write.
-        scenes: Rooms to check; all of the directory if left out.
-        schema: JSON Schema of room files.
         settling: What counts as staying put.
     """
-    objects, rules = read_catalogue(catalogue), cast(dict[str, Any], read_yaml(schema))
-    paths = [path_of(rooms, scene) for scene in scenes] or sorted(rooms.glob("*.yaml"))
-    layouts = [read_layout(path, objects, rules) for path in paths]
+    read = layout_reader(rooms, schema, catalogue)
+    layouts = [read(scene) for scene in scenes]
     used = {item.object_id: item for layout in layouts for item in layout.objects}
     bodies = bodies_of(used.values(), settling.margin_m)
     found, failures = [], []
@@ -62,14 +57,6 @@ def main(
     log.info("%d placements in %d rooms settled", len(found), len(layouts))
     if failures:
         raise BadInput("\n".join([*failures[:MOST_LINES], f"{len(failures)} failures"]))
-
-
-def path_of(rooms: Path, scene: str) -> Path:
-    """Return the file of a room that exists."""
-    known = {path.stem: path for path in rooms.glob("*.yaml")}
-    if scene not in known:
-        raise unknown(f"scene of {rooms}", scene, list(known))
-    return known[scene]
 
 
 def line_of(row: PlacementCheck) -> str:

@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from placing.answering import Learned
 from placing.artifacts.formats import read_json
 from placing.baselines import FEATURES_OF
 from placing.errors import BadArtifact
 from placing.potential import Theta
+from placing.scene_model import Learned
 
 
 def read_learned(folder: Path) -> Learned:

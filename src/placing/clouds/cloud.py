@@ -18,6 +18,13 @@ from numpy.typing import NDArray
 
 from placing.clouds.levelling import estimate_normals, level
 from placing.clouds.ply import Cloud
+from placing.clouds.voxels import (
+    add_sides,
+    average,
+    cell_keys,
+    count_around,
+    lowest,
+)
 from placing.errors import BadInput
 
 TILE = 64
@@ -97,58 +104,24 @@ def thin(cloud: Cloud, voxel_m: float) -> Cloud:
     Points whose normals have different main directions are not averaged, so that a
     board thinner than a voxel keeps its upper and its lower face.
     """
-    low = cloud.points.min(axis=0) - 0.37 * voxel_m  # Off the round heights of designs.
-    voxels = ((cloud.points - low) / voxel_m).astype(np.int64)  # (n, 3)
-    shape = voxels.max(axis=0) + 1
-    key = (voxels[:, 0] * shape[1] + voxels[:, 1]) * shape[2] + voxels[:, 2]
-    key = key * 8 + _side(cloud.normals)
-    order = np.argsort(key, kind="stable")
-    starts = np.flatnonzero(np.diff(key[order], prepend=-1))
-    count = np.diff(starts, append=len(order))[:, None]
-
-    def mean(values: NDArray) -> NDArray[np.float64]:
-        """Return the mean of the values in each voxel."""
-        return np.add.reduceat(values[order].astype(float), starts) / count
-
-    normals = mean(cloud.normals)
-    length = np.linalg.norm(normals, axis=1, keepdims=True)
-    normals = np.divide(normals, length, out=normals, where=length > 0)
-    return Cloud(
-        mean(cloud.points).astype(np.float32),
-        normals.astype(np.float32),
-        mean(cloud.colors).round().astype(np.uint8),
-    )
+    low = lowest(cloud.points) - 0.37 * voxel_m  # Off the round heights of designs.
+    keys = add_sides(cell_keys(cloud.points, low, voxel_m)[0], cloud.normals)
+    order = np.argsort(keys, kind="stable")
+    return Cloud(*average(keys, order, cloud.points, cloud.normals, cloud.colors))
 
 
 def drop_outliers(cloud: Cloud, config: CloudConfig) -> Cloud:
     """Return the cloud without points that have few others around them."""
     # Counting in cells takes a tenth of the time of searching nearest neighbours.
-    cells = (
-        (cloud.points - cloud.points.min(axis=0)) / config.outlier_cell_m + 1
-    ).astype(np.int64)
-    shape = cells.max(axis=0) + 2  # An empty border: neighbours never wrap around.
-    key = (cells[:, 0] * shape[1] + cells[:, 1]) * shape[2] + cells[:, 2]
-    filled, cell, count = np.unique(key, return_inverse=True, return_counts=True)
-    total = np.append(0, np.cumsum(count))
-    around = np.zeros(len(filled), np.int64)
-    for dx in (-1, 0, 1):
-        for dy in (-1, 0, 1):
-            middle = filled + (dx * shape[1] + dy) * shape[2]
-            first = np.searchsorted(filled, middle - 1)
-            around += total[np.searchsorted(filled, middle + 2)] - total[first]
-    return cloud.take(around[cell] > config.outlier_neighbors)
+    low = lowest(cloud.points) - config.outlier_cell_m
+    keys, shape = cell_keys(cloud.points, low, config.outlier_cell_m)
+    n_around = count_around(keys, np.argsort(keys, kind="stable"), shape)
+    return cloud.take(n_around > config.outlier_neighbors)
 
 
 def _face_colors(mesh: trimesh.Trimesh) -> NDArray[np.uint8]:
     """Return red, green and blue of each face, shape (f, 3)."""
     return np.asarray(getattr(mesh.visual, "face_colors"))[:, :3]  # noqa: B009
-
-
-def _side(normals: NDArray[np.float32]) -> NDArray[np.int64]:
-    """Return which of six main directions each normal has, 6 without, shape (n,)."""
-    axis = np.abs(normals).argmax(axis=1)
-    along = np.take_along_axis(normals, axis[:, None], axis=1)[:, 0]
-    return np.where(along == 0, 6, 2 * axis + (along > 0))
 
 
 def _rasterise(

@@ -40,7 +40,12 @@ class Cloud:
 
     def take(self, chosen: NDArray) -> "Cloud":
         """Return the points `chosen` by mask or by index."""
-        return Cloud(self.points[chosen], self.normals[chosen], self.colors[chosen])
+        rows = np.flatnonzero(chosen) if chosen.dtype == bool else chosen
+        return Cloud(
+            self.points.take(rows, axis=0),
+            self.normals.take(rows, axis=0),
+            self.colors.take(rows, axis=0),
+        )
 
 
 def read_ply(path: Path) -> Cloud:

@@ -1,54 +1,56 @@
 """Whether objects stay where an arrangement puts them, by rigid-body simulation.
 
 All bodies of an arrangement settle together, among furniture that does not move, in a
-world made for this one trial: worlds that are used again give other results. Soft
-furniture is rigid here, so that a cushion rests on a seat and does not sink in.
+world made for this one trial. Soft furniture is rigid here, so that a cushion rests on
+a seat and does not sink in.
 """
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 import pybullet
 
 from placing import rigid
 from placing.physics.bodies import Body, Piece
+from placing.physics.simulator import (
+    add_body,
+    add_fixed,
+    deepest_overlap,
+    motion,
+    new_world,
+    supports_of,
+)
 from placing.rigid import Array
-
-GRAVITY_M_S2 = 9.81
-MAX_STEEPNESS = 0.5
-"""Least z of the normal of a contact that carries: 60 degrees from level."""
 
 
 @dataclass(frozen=True)
 class SettleConfig:
-    """What a trial is, and what an object may do in it without being refused."""
+    """What a trial is, and what an object may do in it; values: config/config.yaml."""
 
-    duration_s: float = 1.5
+    duration_s: float
     """Simulated time."""
-    time_step_s: float = 1 / 240
-    friction: float = 0.7
+    step_rate_hz: float
+    """Steps of the simulator in a second."""
+    friction: float
     """Coefficient of Coulomb friction of a pair of bodies."""
-    margin_m: float = 0.001
+    margin_m: float
     """Shell around convex pieces; they are shrunk by as much."""
-    near_m: float = 0.1
+    near_m: float
     """Furniture farther than this beside or above all objects is left out."""
-    max_penetration_m: float = 0.003
+    max_penetration_m: float
     """Deepest overlap before the first step."""
-    max_moved_m: float = 0.02
+    max_moved_m: float
     """Farthest way of the centre of an object."""
-    max_tilted_deg: float = 10.0
-    """Largest rotation about any axis: a plate in a rack leans against its wire."""
-    max_drop_m: float = 0.05
+    max_tilted_deg: float
+    """Largest rotation about any axis."""
+    max_drop_m: float
     """An object that sinks more than this fell."""
-    max_speed_m_s: float = 0.05
+    max_speed_m_s: float
     """An object that is faster in the end did not come to rest."""
-    min_arrangements: int = 3
+    min_arrangements: int
     """Fewest labelled arrangements of a room."""
-    max_arrangements: int = 5
+    max_arrangements: int
 
 
 @dataclass(frozen=True)
@@ -67,17 +69,6 @@ class Settled:
     """Names of what carries it in the end."""
 
 
-@dataclass(frozen=True)
-class World:
-    """A client of the simulator and the names of what is in it."""
-
-    client: int
-    folder: Path
-    """Private: the simulator reads compound shapes from files."""
-    names: dict[int, str]
-    """Of each body of the simulator."""
-
-
 def settle(
     fixed: Mapping[str, tuple[Piece, ...]],
     bodies: Mapping[str, tuple[Body, Array]],
@@ -88,16 +79,16 @@ def settle(
     `fixed` holds furniture in the frame of the world; poses are those of the meshes
     the bodies come from.
     """
-    with new_world(config) as world:
+    with new_world(config.step_rate_hz, config.friction, config.margin_m) as world:
         for name, piece in near_pieces(fixed, bodies, config.near_m):
-            add_fixed(world, name, piece, config)
+            add_fixed(world, name, piece)
         starts = {
-            add_body(world, name, body, T_world_body, config): (body, T_world_body)
+            add_body(world, name, body, T_world_body): (body, T_world_body)
             for name, (body, T_world_body) in bodies.items()
         }
         pybullet.performCollisionDetection(world.client)
         overlaps = {i: deepest_overlap(world, i) for i in starts}
-        for _ in range(round(config.duration_s / config.time_step_s)):
+        for _ in range(round(config.duration_s * config.step_rate_hz)):
             pybullet.stepSimulation(world.client)
         return {
             world.names[i]: Settled(
@@ -105,25 +96,6 @@ def settle(
             )
             for i, (body, T) in starts.items()
         }
-
-
-@contextmanager
-def new_world(config: SettleConfig) -> Iterator[World]:
-    """Yield an empty world with gravity that is gone afterwards."""
-    client = pybullet.connect(pybullet.DIRECT)
-    try:
-        with TemporaryDirectory(prefix="settling") as folder:
-            pybullet.setGravity(0, 0, -GRAVITY_M_S2, physicsClientId=client)
-            pybullet.setPhysicsEngineParameter(
-                fixedTimeStep=config.time_step_s,
-                numSolverIterations=100,
-                deterministicOverlappingPairs=1,
-                enableFileCaching=0,
-                physicsClientId=client,
-            )
-            yield World(client, Path(folder), {})
-    finally:
-        pybullet.disconnect(client)
 
 
 def near_pieces(
@@ -145,107 +117,3 @@ def near_pieces(
             & np.all(piece.vertices_m.min(0) <= high, axis=1)
         )
     ]
-
-
-def add_fixed(world: World, name: str, piece: Piece, config: SettleConfig) -> None:
-    """Put a piece that does not move into the world."""
-    options = {}
-    if not piece.is_convex:
-        options = {
-            "indices": piece.faces.ravel().tolist(),
-            "flags": pybullet.GEOM_FORCE_CONCAVE_TRIMESH,
-        }
-    shape = pybullet.createCollisionShape(
-        pybullet.GEOM_MESH,
-        vertices=piece.vertices_m.tolist(),
-        physicsClientId=world.client,
-        **options,
-    )
-    i = pybullet.createMultiBody(0, shape, physicsClientId=world.client)
-    pybullet.changeDynamics(
-        i,
-        -1,
-        # The simulator multiplies the coefficients of the two bodies of a contact.
-        lateralFriction=np.sqrt(config.friction),
-        collisionMargin=config.margin_m if piece.is_convex else 0.0,
-        physicsClientId=world.client,
-    )
-    world.names[i] = name
-
-
-def add_body(
-    world: World, name: str, body: Body, T_world_body: Array, config: SettleConfig
-) -> int:
-    """Return the number of a body that is put into the world at a pose."""
-    w, x, y, z = T_world_body[:4]
-    # The simulator keeps read files by name, so each body has a file of its own.
-    path = world.folder / f"body{len(world.names)}.obj"
-    path.write_text(wavefront(body.pieces))
-    shape = pybullet.createCollisionShape(
-        pybullet.GEOM_MESH, fileName=str(path), physicsClientId=world.client
-    )
-    i = pybullet.createMultiBody(
-        body.mass_kg,
-        shape,
-        basePosition=rigid.apply(T_world_body, body.mass_centre_m[None])[0],
-        baseOrientation=(x, y, z, w),
-        physicsClientId=world.client,
-    )
-    pybullet.changeDynamics(
-        i,
-        -1,
-        lateralFriction=np.sqrt(config.friction),
-        # ASSUME: what is round does not roll off by itself on a real table top.
-        rollingFriction=0.001,
-        spinningFriction=0.001,
-        collisionMargin=config.margin_m,
-        localInertiaDiagonal=body.inertia_kg_m2,
-        physicsClientId=world.client,
-    )
-    world.names[i] = name
-    return i
-
-
-def wavefront(pieces: tuple[Piece, ...]) -> str:
-    """Return the text of an OBJ file with an object per piece."""
-    lines, n_before = [], 1
-    for number, piece in enumerate(pieces):
-        lines.append(f"o piece{number}")
-        lines += [f"v {x:.9f} {y:.9f} {z:.9f}" for x, y, z in piece.vertices_m]
-        lines += [f"f {a} {b} {c}" for a, b, c in piece.faces + n_before]
-        n_before += len(piece.vertices_m)
-    return "\n".join(lines) + "\n"
-
-
-def deepest_overlap(world: World, i: int) -> tuple[float, str]:
-    """Return the deepest overlap of a body and the name of what it overlaps with."""
-    depths = [(-contact[8], contact[2]) for contact in contacts_of(world, i)]
-    depth, other = max(depths, default=(0.0, -1))
-    return (depth, world.names[other]) if depth > 0 else (0.0, "")
-
-
-def supports_of(world: World, i: int) -> tuple[str, ...]:
-    """Return the sorted names of what carries a body."""
-    contacts = contacts_of(world, i)
-    carrying = [c for c in contacts if c[7][2] > MAX_STEEPNESS and c[9] > 0]
-    return tuple(sorted({world.names[contact[2]] for contact in carrying}))
-
-
-def contacts_of(world: World, i: int) -> tuple[tuple, ...]:
-    """Return the contacts of a body: other body 2, normal 7, distance 8, force 9."""
-    return pybullet.getContactPoints(bodyA=i, physicsClientId=world.client)
-
-
-def motion(
-    world: World, i: int, body: Body, T_world_start: Array
-) -> tuple[float, float, float, float]:
-    """Return how far a body went [m], sank [m], turned [deg] and its speed [m/s]."""
-    position, (x, y, z, w) = pybullet.getBasePositionAndOrientation(i, world.client)
-    velocity, _ = pybullet.getBaseVelocity(i, world.client)
-    T_world_end = np.array([w, x, y, z, *position])
-    T_world_end[4:] = rigid.apply(T_world_end, -body.mass_centre_m[None])[0]
-    way = T_world_end[4:] - T_world_start[4:]
-    cosine = min(1.0, abs(T_world_end[:4] @ T_world_start[:4]))
-    turned_deg = np.rad2deg(2 * np.arccos(cosine))
-    distances = np.linalg.norm(way), -way[2], turned_deg, np.linalg.norm(velocity)
-    return tuple(float(value) for value in distances)  # type: ignore[return-value]

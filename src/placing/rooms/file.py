@@ -12,29 +12,17 @@ from pathlib import Path
 from typing import Any
 
 import yaml
-from jsonschema import Draft202012Validator, ValidationError
-from jsonschema.exceptions import best_match
 
 from placing.errors import BadInput
+from placing.schema import check
 
 MAX_BYTES = 1_000_000
 """Guards the parser: a room with five arrangements has about 15,000."""
 
 MAX_DEPTH = 20
 """Guards the parser, which calls itself for each level of nesting."""
+
 BOOL = "tag:yaml.org,2002:bool"
-EXPECTED = {
-    "type": "type {}",
-    "enum": "one of {}",
-    "minimum": "at least {}",
-    "maximum": "at most {}",
-    "minItems": "at least {} items",
-    "maxItems": "at most {} items",
-    "minLength": "at least {} characters",
-    "maxLength": "at most {} characters",
-    "pattern": "a text like {}",
-}
-"""How the words of JSON Schema read in a sentence."""
 
 
 class StrictLoader(yaml.SafeLoader):
@@ -87,11 +75,7 @@ StrictLoader.add_implicit_resolver(BOOL, re.compile("^(true|false)$"), list("tf"
 def read_room_file(path: Path, schema: dict[str, Any]) -> dict[str, Any]:
     """Return the content of a room file that matches `schema`."""
     content = read_yaml(path)
-    errors = Draft202012Validator(schema).iter_errors(content)
-    error = best_match(errors)
-    if error is not None:
-        field = field_name(content, list(error.absolute_path))
-        raise BadInput(f"{path}: {field}{complaint(error)}")
+    check(content, schema, str(path))
     return content
 
 
@@ -112,26 +96,3 @@ def read_yaml(path: Path) -> Any:  # noqa: ANN401
     except (yaml.YAMLError, ValueError) as error:
         reason = " ".join(str(error).split())[:200]
         raise BadInput(f"{path}: {reason}, expected YAML") from error
-
-
-def field_name(content: Any, keys: list[str | int]) -> str:  # noqa: ANN401
-    """Return a field as `furniture[desk1].size_m[0]`: items by their id if any."""
-    name = ""
-    for key in keys:
-        content = content[key]
-        if isinstance(key, int):
-            item = content if isinstance(content, dict) else {}
-            name += f"[{item.get('labeller', item.get('id', key))}]"
-        else:
-            name += f".{key}"
-    return name.removeprefix(".") or "content"
-
-
-def complaint(error: ValidationError) -> str:
-    """Return what is wrong with the value of a field and what was expected."""
-    rule = str(error.validator)
-    if rule not in EXPECTED:
-        return f": {error.message[:200]}".replace("\n", " ")
-    value = repr(error.instance)
-    value = value if len(value) < 60 else f"{value[:60]}..."
-    return f" is {value}, expected {EXPECTED[rule].format(error.validator_value)}"

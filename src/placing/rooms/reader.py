@@ -4,6 +4,7 @@ Reads a file of the format that `room.schema.yaml` describes into a `Layout`; wh
 schema cannot say is checked before anything is made of it.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,16 +12,32 @@ from typing import Any
 import numpy as np
 
 from placing import rigid
-from placing.errors import BadInput, PlacingError
+from placing.errors import BadInput, PlacingError, unknown
 from placing.rooms.arrangements import read_arrangements
+from placing.rooms.catalogue import read_catalogue
 from placing.rooms.checks import (
     check_furniture,
     check_names,
     check_openings,
     check_outline,
 )
-from placing.rooms.file import read_room_file
+from placing.rooms.file import read_room_file, read_yaml
 from placing.scene import Furniture, Layout, Opening, SceneObject
+
+
+def layout_reader(
+    folder: Path, schema: Path, catalogue: Path
+) -> Callable[[str], Layout]:
+    """Return the function from the name of a room of `folder` to its layout."""
+    known = {path.stem: path for path in folder.glob("*.yaml")}
+    objects, rules = read_catalogue(catalogue), read_yaml(schema)
+
+    def read(scene: str) -> Layout:
+        if scene not in known:
+            raise unknown(f"scene of {folder}", scene, list(known))
+        return read_layout(known[scene], objects, rules)
+
+    return read
 
 
 def read_layout(
