@@ -63,12 +63,16 @@ def fit(pairs: pd.DataFrame, config: FittingConfig) -> Theta:
 
 
 def relative(objects: Array, references: Array) -> tuple[Array, Array, Array, Array]:
-    """Return log distance, bearing, height and orientation of pairs, (n,) each."""
+    """Return log distance, bearing, height and orientation of pairs, (n,) each.
+
+    `objects` (n, 4) x, y, z, yaw; `references` (n, 5) as of `HumanPoses.references`.
+    """
     dx, dy = (objects[:, :2] - references[:, :2]).T
     log_distance = np.log(np.maximum(np.hypot(dx, dy), MIN_DISTANCE_M))
-    bearing = np.arctan2(dy, dx) - references[:, 3]
+    yaw = np.arctan2(references[:, 4], references[:, 3])
+    bearing = np.arctan2(dy, dx) - yaw
     height = objects[:, 2] - references[:, 2]
-    return log_distance, bearing, height, objects[:, 3] - references[:, 3]
+    return log_distance, bearing, height, objects[:, 3] - yaw
 
 
 def _fit_normal(

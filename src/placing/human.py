@@ -1,4 +1,4 @@
-"""Valid human poses of a scene: the discrete set on which P0 is uniform.
+"""Valid human poses of a scene: the discrete set on which P0 lives.
 
 A pose is a kind, a place and a heading on a lattice. It is valid when its body is free
 of the cloud's points and its weight is supported: the feet of standing kinds on the
@@ -54,10 +54,15 @@ class HumanPoses:
     """(q,) P0 of each pose; sums to 1."""
 
     def references(self) -> Array:
-        """Return x, y, z of the reference point and yaw of each pose, shape (q, 4)."""
+        """Return where each person is and looks, shape (q, 5).
+
+        x, y, z of the reference point, and cosine and sine of the yaw, since the
+        potential needs no angle.
+        """
         offsets = np.array([skeleton.reference_m(kind) for kind in skeleton.KINDS])
         z = self.location[:, 2] + offsets[self.kind]
-        return np.column_stack([self.location[:, :2], z, self.yaw])
+        look = [np.cos(self.yaw), np.sin(self.yaw)]
+        return np.column_stack([self.location[:, :2], z, *look])
 
 
 def valid_poses(
@@ -69,17 +74,25 @@ def valid_poses(
     origin, is_occupied = _occupancy(points, config.voxel_m)
     blocks = []
     for kind_index, kind in enumerate(skeleton.KINDS):
-        places, weight = _places(kind, areas, config)
+        places = _places(kind, areas, config)
         for yaw in headings(config.n_headings):
             body = _body_voxels(kind, yaw, config.voxel_m)
             bases = _base_voxels(places, origin, config.voxel_m)
             free = places[_is_free(is_occupied, bases, body)]
             columns = [np.full(len(free), kind_index), free, np.full(len(free), yaw)]
-            blocks.append(np.column_stack([*columns, np.full(len(free), weight)]))
+            blocks.append(np.column_stack(columns))
     table = np.concatenate(blocks)
-    prior = table[:, 5] / max(table[:, 5].sum(), 1e-300)  # no pose at all divides by 0
     kind = table[:, 0].astype(np.uint8)
-    return HumanPoses(kind, table[:, 1:4], table[:, 4], prior)
+    return HumanPoses(kind, table[:, 1:4], table[:, 4], prior_of(kind))
+
+
+def prior_of(kind: NDArray[np.uint8]) -> Array:
+    """Return P0 of valid poses by their kinds, shape (q,), sum 1."""
+    # ASSUME: every kind that a scene allows is as likely as another, and all its poses
+    # are alike; otherwise the lattice and the free floor would decide how often people
+    # sit, and there is a hundred times more floor than seat.
+    _, which, count = np.unique(kind, return_inverse=True, return_counts=True)
+    return 1 / (len(count) * count[which]) if len(kind) else np.empty(0)
 
 
 def headings(n_headings: int) -> Array:
@@ -97,10 +110,8 @@ def lattice(polygon_m: Array, spacing_m: float) -> Array:
     return np.column_stack([x, y])[is_inside]
 
 
-def _places(
-    kind: str, areas: tuple[PlacingArea, ...], config: PosesConfig
-) -> tuple[Array, float]:
-    """Return where a kind can be supported, (p, 3), and the floor area of each [m2]."""
+def _places(kind: str, areas: tuple[PlacingArea, ...], config: PosesConfig) -> Array:
+    """Return where a kind can be supported, shape (p, 3) [m]."""
     if kind in skeleton.SITTING:
         spacing = config.sitting_spacing_m
         seats = (config.min_seat_m, config.max_seat_m)
@@ -110,7 +121,7 @@ def _places(
         used = [a for a in areas if a.is_floor or a.height_m < MAX_STEP_M]
     grids = [(lattice(area.polygon_m, spacing), area.height_m) for area in used]
     places = [np.column_stack([xy, np.full(len(xy), z)]) for xy, z in grids]
-    return np.concatenate([np.empty((0, 3)), *places]), spacing**2
+    return np.concatenate([np.empty((0, 3)), *places])
 
 
 def _occupancy(

@@ -46,7 +46,7 @@ class Example:
     """(n, 4) x, y, z, yaw of each object."""
     has_front: NDArray[np.bool_]
     references: Array
-    """(q, 4) x, y, z of the reference point and yaw of each valid pose."""
+    """(q, 5) as `HumanPoses.references` returns."""
     prior: Array
     """(q,) P0."""
 

@@ -49,8 +49,9 @@ def log_psi_human(
 ) -> NDArray[np.float32]:
     """Return log Psi_human of each object with each pose, shape (n, q).
 
-    `objects` (n, 4) = x, y, z, yaw in the world; `poses` (q, 4) = x, y, z of the
-    reference point, yaw. An object without a front leaves out Psi_ori.
+    `objects` (n, 4) = x, y, z, yaw in the world; `poses` (q, 5) = x, y, z of the
+    reference point, cosine and sine of the yaw. An object without a front leaves out
+    Psi_ori.
     """
     logs = np.empty((len(objects), len(poses)), np.float32)
     constants = _log_constants(theta)
@@ -83,21 +84,29 @@ def _log_von_mises_constant(kappa: float) -> float:
 
 @njit(cache=True)
 def _fill(logs, objects, has_front, poses, theta, log_loc, log_ori):  # noqa: ANN001, ANN202
-    """Fill `logs` (n, q); cosines of differences need no angle of the displacement."""
+    """Fill `logs` (n, q).
+
+    Cosines of differences are products of unit vectors: no angle is computed per pair.
+    """
     m_d, s_d, m_r, k_r, m_h, s_h, m_o, k_o = theta
-    for k in range(poses.shape[0]):
-        ahead_x, ahead_y = np.cos(poses[k, 3] + m_r), np.sin(poses[k, 3] + m_r)
-        for i in range(objects.shape[0]):
+    cos_r, sin_r = np.cos(m_r), np.sin(m_r)
+    for i in range(objects.shape[0]):
+        front_x, front_y = np.cos(objects[i, 3] - m_o), np.sin(objects[i, 3] - m_o)
+        for k in range(poses.shape[0]):
             dx, dy = objects[i, 0] - poses[k, 0], objects[i, 1] - poses[k, 1]
             d = max(np.sqrt(dx * dx + dy * dy), MIN_DISTANCE_M)
-            u = (np.log(d) - m_d) / s_d
+            log_d = np.log(d)
+            u = (log_d - m_d) / s_d
             v = (objects[i, 2] - poses[k, 2] - m_h) / s_h
             # The density of a location on the plane is f(d) / d g(r), and the
             # log-normal f(d) brings another 1 / d.
-            log_psi = log_loc - 2 * np.log(d) - 0.5 * (u * u + v * v)
+            log_psi = log_loc - 2 * log_d - 0.5 * (u * u + v * v)
+            ahead_x = poses[k, 3] * cos_r - poses[k, 4] * sin_r
+            ahead_y = poses[k, 3] * sin_r + poses[k, 4] * cos_r
             log_psi += k_r * (dx * ahead_x + dy * ahead_y) / d
             if has_front[i]:
-                log_psi += log_ori + k_o * np.cos(objects[i, 3] - poses[k, 3] - m_o)
+                faced = poses[k, 3] * front_x + poses[k, 4] * front_y
+                log_psi += log_ori + k_o * faced
             logs[i, k] = log_psi
 
 

@@ -80,6 +80,11 @@ class Placement:
     orientation: Array
     """(4,) unit quaternion wxyz that turns the object's frame to the world's."""
 
+    @property
+    def T_world_object(self) -> Array:
+        """Pose of the object, shape (7,)."""
+        return np.concatenate([self.orientation, self.location])
+
 
 @dataclass(frozen=True)
 class Arrangement:

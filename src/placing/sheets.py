@@ -19,7 +19,7 @@ def read_sheet(
     """
     properties = row_schema["properties"]
     rows, seen = [], {}
-    for line, cells in _lines(path, list(properties)):
+    for line, cells in read_lines(path, list(properties)):
         where = f"{path}: line {line}"
         row = {name: _value(cells[name], properties[name]) for name in properties}
         schema.check(row, row_schema, where)
@@ -36,7 +36,7 @@ def read_sheet(
     return rows
 
 
-def _lines(path: Path, columns: list[str]) -> list[tuple[int, dict[str, str]]]:
+def read_lines(path: Path, columns: list[str]) -> list[tuple[int, dict[str, str]]]:
     """Return the rows below the header with the number of their line in the file."""
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:

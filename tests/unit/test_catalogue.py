@@ -59,35 +59,35 @@ def test_order_of_the_file_is_kept(tmp_path):
 @pytest.mark.parametrize(
     ("bad", "complaint"),
     [
-        (GOOD.replace(",mug,", ",mgu,"), r"line 3: shape is 'mgu'; expected one of"),
-        (GOOD.replace("0.11", "wide"), r"line 3: width_m is 'wide'; expected a finite"),
-        (GOOD.replace("0.11", "nan"), r"line 3: width_m is 'nan'; expected a finite"),
-        (GOOD.replace("0.11", "inf"), r"line 3: width_m is 'inf'; expected a finite"),
-        (GOOD.replace("0.3", "-1"), r"line 3: mass_kg is '-1'; expected .* above 0"),
-        (GOOD.replace("True,True", "True,yes"), r"line 3: movable is 'yes'; expected"),
-        (GOOD.replace("mug1", ""), r"line 3: object is ''; expected a word"),
+        (GOOD.replace(",mug,", ",mgu,"), r"shape: value 'mgu'; expected one of"),
+        (GOOD.replace("0.11", "wide"), r"width_m: value 'wide'; expected a finite"),
+        (GOOD.replace("0.11", "nan"), r"width_m: value 'nan'; expected a finite"),
+        (GOOD.replace("0.11", "inf"), r"width_m: value 'inf'; expected a finite"),
+        (GOOD.replace("0.3", "-1"), r"mass_kg: value '-1'; expected .* above 0"),
+        (GOOD.replace("True,True", "True,yes"), r"movable: value 'yes'; expected"),
+        (GOOD.replace("mug1", ""), r"object: value ''; expected a word"),
         (
             GOOD.replace("mug1", "../mug"),
-            r"line 3: object is '../mug'; expected a word",
+            r"object: value '../mug'; expected a word",
         ),
-        (GOOD.replace("mug1", "cup"), r"line 3: object is 'cup'; .* not used above"),
-        (GOOD + ",more", r"line 3: has 10 columns; expected 9"),
+        (GOOD.replace("mug1", "cup"), r"object: value 'cup'; .* not used above"),
+        (GOOD + ",more", r"10 cells; expected 9"),
     ],
 )
 def test_bad_line_is_named_with_what_was_expected(tmp_path, bad, complaint):
     path = written(tmp_path, HEADER, GOOD.replace("mug1", "cup"), bad)
-    with pytest.raises(BadInput, match=complaint) as caught:
+    with pytest.raises(BadInput, match=rf"line 3: {complaint}") as caught:
         read_catalogue(path)
     assert str(path) in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
 def test_bad_header_missing_file_and_empty_table_are_named(tmp_path):
-    with pytest.raises(BadInput, match=r"line 1: header is 'a,b'; expected object,cat"):
+    with pytest.raises(BadInput, match=r"line 1: header 'a,b'; expected object,cat"):
         read_catalogue(written(tmp_path, "a,b", "1,2"))
-    with pytest.raises(BadInput, match="holds 0 objects"):
+    with pytest.raises(BadInput, match="no rows"):
         read_catalogue(written(tmp_path, HEADER))
-    with pytest.raises(BadInput, match=r"nowhere\.csv: cannot be read"):
+    with pytest.raises(BadInput, match=r"nowhere\.csv: .*expected a CSV file"):
         read_catalogue(tmp_path / "nowhere.csv")
 
 

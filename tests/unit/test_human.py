@@ -39,11 +39,13 @@ def is_sitting(poses):
     return np.array(sitting)[poses.kind]
 
 
-def test_prior_is_uniform_over_floor_area_and_sums_to_one(seat):
+def test_prior_gives_every_kind_the_same_share_and_its_poses_too(seat):
     _, poses = seat
-    assert poses.prior.sum() == pytest.approx(1)
-    ratio = poses.prior[~is_sitting(poses)][0] / poses.prior[is_sitting(poses)][0]
-    assert ratio == pytest.approx((0.2 / 0.1) ** 2)
+    kinds = np.unique(poses.kind)
+    for kind in kinds:
+        of_kind = poses.prior[poses.kind == kind]
+        assert of_kind.sum() == pytest.approx(1 / len(kinds))
+        assert np.ptp(of_kind) == 0
 
 
 def test_sitting_poses_are_on_the_seat_and_standing_ones_on_the_floor(seat):

@@ -54,6 +54,8 @@ def simulated_scene(rng, name):
     columns = [x + d * np.cos(bearing), y + d * np.sin(bearing)]
     columns += [z + rng.normal(-0.25, 0.05, 4), heading]
     objects, has_front = np.column_stack(columns), np.ones(4, np.bool_)
+    look = [np.cos(references[:, 3]), np.sin(references[:, 3])]
+    references = np.column_stack([references[:, :3], *look])
     prior = np.full(400, 1 / 400)
     return [Example(name, ("mug",) * 4, objects, has_front, references, prior)]
 

@@ -23,6 +23,12 @@ def random_pairs(rng, n):
     return objects, poses
 
 
+def looking(poses):
+    """Return poses with cosine and sine in place of their yaw, shape (q, 5)."""
+    yaw = poses[:, 3]
+    return np.column_stack([poses[:, :3], np.cos(yaw), np.sin(yaw)])
+
+
 def test_each_factor_is_the_density_of_scipy():
     objects, poses = random_pairs(np.random.default_rng(0), 50)
     dx, dy = (objects[:, :2] - poses[:, :2]).T
@@ -32,7 +38,7 @@ def test_each_factor_is_the_density_of_scipy():
     expected += stats.norm.logpdf(objects[:, 2] - poses[:, 2], -0.2, 0.1)
     expected += stats.vonmises.logpdf(objects[:, 3] - poses[:, 3], 1.5, loc=3.0)
     has_front = np.ones(50, np.bool_)
-    found = np.diag(log_psi_human(THETA, objects, has_front, poses))
+    found = np.diag(log_psi_human(THETA, objects, has_front, looking(poses)))
     np.testing.assert_allclose(found, expected, rtol=1e-5, atol=1e-4)
 
 
@@ -41,7 +47,7 @@ def test_location_density_integrates_to_one_over_space():
 
     def density(r, angle):
         at = np.array([[0.3 + r * np.cos(angle), -0.2 + r * np.sin(angle), 0.8, 0.0]])
-        return r * np.exp(log_psi_loc(THETA, at, pose)[0, 0])
+        return r * np.exp(log_psi_loc(THETA, at, looking(pose))[0, 0])
 
     planar, _ = integrate.dblquad(density, -np.pi, np.pi, 0.06, 8, epsabs=1e-4)
     at_mode = stats.norm.pdf(0.8 - 1.0, -0.2, 0.1)
@@ -52,8 +58,10 @@ def test_object_without_front_ignores_its_heading():
     objects, poses = random_pairs(np.random.default_rng(1), 5)
     no_front = np.zeros(5, np.bool_)
     turned = objects + np.array([0, 0, 0, 1.0])
-    a = log_psi_human(THETA, objects, no_front, poses)
-    np.testing.assert_array_equal(a, log_psi_human(THETA, turned, no_front, poses))
+    a = log_psi_human(THETA, objects, no_front, looking(poses))
+    np.testing.assert_array_equal(
+        a, log_psi_human(THETA, turned, no_front, looking(poses))
+    )
 
 
 def test_potential_is_unchanged_when_object_and_person_move_together():
@@ -64,8 +72,8 @@ def test_potential_is_unchanged_when_object_and_person_move_together():
         return np.column_stack([rigid.apply(T, rows[:, :3]), rows[:, 3] + 1.1])
 
     has_front = np.ones(20, np.bool_)
-    before = log_psi_human(THETA, objects, has_front, poses)
-    after = log_psi_human(THETA, moved(objects), has_front, moved(poses))
+    before = log_psi_human(THETA, objects, has_front, looking(poses))
+    after = log_psi_human(THETA, moved(objects), has_front, looking(moved(poses)))
     np.testing.assert_allclose(after, before, atol=2e-4)
 
 
@@ -74,7 +82,7 @@ def test_tables_agree_with_the_potential():
     half, poses = 40, np.array([[0.0, 0.0, 1.0, 3 * np.pi / 4]])
     objects = np.array([[0.5, 0.25, 0.9, 0.0], [-1.2, 0.4, 1.3, 0.0]])
     for place, direct in zip(
-        objects, log_psi_loc(THETA, objects, poses)[:, 0], strict=True
+        objects, log_psi_loc(THETA, objects, looking(poses))[:, 0], strict=True
     ):
         i, j = np.round(place[:2] / 0.05).astype(int) + half
         h = height_factor(THETA, place[2:3], poses[:, 2])[0, 0]

@@ -17,6 +17,7 @@ from placing.rooms.catalogue import read_catalogue
 from placing.rooms.likeness import likeness
 from placing.rooms.reader import read_layout
 from placing.scene import Layout, SceneObject
+from placing.shapes.furniture import furniture_shape
 
 ROOT = Path(__file__).parents[2]
 ROOMS = sorted((ROOT / "resources/rooms").glob("*.yaml"))
@@ -72,7 +73,7 @@ def test_height_follows_from_what_carries_an_object(tmp_path: Path) -> None:
 def test_a_book_on_edge_is_as_high_as_it_is_deep(tmp_path: Path) -> None:
     layout = read(tmp_path)
     placement = layout.arrangements[0].placements[3]
-    shelf = room_plan.shape_of("bookcase", (0.3, 0.9, 1.9)).supports
+    shelf = furniture_shape("bookcase", (0.3, 0.9, 1.9)).supports
     boards = sorted({support.height_m for support in shelf})
     half_depth = CATALOGUE["book2"].size_m[0] / 2
     assert placement.location[2] == pytest.approx(boards[1] + half_depth)

@@ -7,7 +7,7 @@ import pandas as pd
 from shapely import Polygon
 
 from command import run
-from placing.artifacts.atomic import replacing
+from placing.artifacts.formats import write_csv
 from placing.artifacts.scenes import read_scene
 from placing.scene import Scene
 from placing.thor.data import find_data, read_data
@@ -34,8 +34,7 @@ def main(scenes: tuple[Path, ...], types: Path, support: Path) -> None:
     columns = {"object_id": "object", "below": "parent_type"}
     table = pd.DataFrame(rows).rename(columns=columns)
     table["parent_type"] = table["parent_type"].str.replace(r"\d.*", "", regex=True)
-    with replacing(support) as part:
-        table.to_csv(part, index=False, float_format="%.4f")
+    write_csv(support, table.round({"gap_m": 4}))
 
 
 def patches_of(scene: Scene) -> list[Patch]:

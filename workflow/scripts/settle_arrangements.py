@@ -8,7 +8,7 @@ import pandas as pd
 from tqdm import tqdm
 
 from command import run
-from placing.artifacts.atomic import replacing
+from placing.artifacts.formats import write_csv
 from placing.errors import BadInput
 from placing.physics.arrangements import (
     PlacementCheck,
@@ -51,8 +51,7 @@ def main(
         failures += complaints_about(layout, settling)
     columns = [field.name for field in fields(PlacementCheck)]
     table = pd.DataFrame([asdict(row) for row in found], columns=columns)
-    with replacing(checks) as part:
-        table.to_csv(part, index=False)
+    write_csv(checks, table)
     failures += [line_of(row) for row in found if not row.stays]
     log.info("%d placements in %d rooms settled", len(found), len(layouts))
     if failures:

@@ -8,10 +8,12 @@ Letters for shapes: v corners, n points.
 """
 
 from itertools import pairwise
+from math import dist, hypot
 from typing import NamedTuple
 
 import numpy as np
 import shapely
+from numba import njit
 from numpy.typing import NDArray
 from shapely import Polygon
 
@@ -36,7 +38,7 @@ class Edge(NamedTuple):
     @property
     def length(self) -> float:
         """Return the distance from start to end [m]."""
-        return float(np.hypot(*(self.end - self.start)))
+        return dist(self.start, self.end)
 
 
 def fit_ring(ring: Array, rim_m: Array, cell_m: float) -> Array:
@@ -64,23 +66,7 @@ def fit_ring(ring: Array, rim_m: Array, cell_m: float) -> Array:
 
 def _unit(vector: Array) -> Array:
     """Return the vector with length 1."""
-    return vector / max(float(np.hypot(*vector)), 1e-12)
-
-
-def _outermost(edge: Edge, rim_m: Array, cell_m: float) -> Array:
-    """Return position along and distance outward of points at an edge, shape (n, 2).
-
-    Of the points within one and a half cells these are the outermost of each stretch
-    as long as a cell.
-    """
-    offset = rim_m - edge.start
-    s, d = offset @ edge.along, offset @ edge.outward
-    is_near = (s > 0) & (s < edge.length) & (np.abs(d) < 1.5 * cell_m)
-    s, d = s[is_near], d[is_near]
-    order = np.lexsort((-d, (s / cell_m).astype(np.intp)))
-    stretch = (s[order] / cell_m).astype(np.intp)
-    first = order[np.diff(stretch, prepend=-1) > 0]
-    return np.stack([s[first], d[first]], axis=1)
+    return vector / max(hypot(*vector), 1e-12)
 
 
 def _main_direction(edges: list[Edge], rim_m: Array, cell_m: float) -> float | None:
@@ -101,12 +87,9 @@ def _main_direction(edges: list[Edge], rim_m: Array, cell_m: float) -> float | N
 def _heading(edge: Edge, rim_m: Array, cell_m: float) -> float:
     """Return the direction of a line through the outermost points [rad]."""
     heading = float(np.arctan2(edge.along[1], edge.along[0]))
-    s, d = _outermost(edge, rim_m, cell_m).T
-    if len(s) < 5:
-        return heading
-    s, d = s - s.mean(), d - d.mean()
+    slope = _slope(edge.start, edge.along, edge.length, rim_m, cell_m)
     # The distance grows to the right, so positive slopes turn the edge clockwise.
-    return heading - float(np.arctan(s @ d / (s @ s)))
+    return heading - float(np.arctan(slope))
 
 
 def _snap(edges: list[Edge], direction: float, cell_m: float) -> list[Edge]:
@@ -140,12 +123,9 @@ def _merge(edges: list[Edge]) -> list[Edge]:
 
 def _shift(edge: Edge, rim_m: Array, cell_m: float) -> float:
     """Return how far an edge, through its middle, moves outward to the points [m]."""
-    middle = (edge.start + edge.end) / 2
-    half = edge.along * edge.length / 2
-    centred = Edge(middle - half, middle + half, edge.along)
-    points = _outermost(centred, rim_m, cell_m)
-    # A point is the mean of its voxel: the edge is a third of a cell further out.
-    return float(np.median(points[:, 1])) + cell_m / 3 if len(points) > 2 else 0.0
+    length = edge.length
+    start = (edge.start + edge.end - edge.along * length) / 2
+    return _distance(start, edge.along, length, rim_m, cell_m)
 
 
 def _intersect(edges: list[Edge], shifts: Array) -> Array:
@@ -162,3 +142,47 @@ def _intersect(edges: list[Edge], shifts: Array) -> Array:
     pairs = np.stack([before, outward], axis=1)[is_corner]  # (., 2, 2)
     corners[is_corner] = np.linalg.solve(pairs, sides[is_corner, :, None])[:, :, 0]
     return corners
+
+
+@njit(cache=True)
+def _outermost(
+    start: Array, along: Array, length: float, rim_m: Array, cell_m: float
+) -> tuple[Array, Array]:
+    """Return position along and distance outward of points at an edge, each (n,).
+
+    Of the points within one and a half cells these are the outermost of each stretch
+    as long as a cell.
+    """
+    n_stretches = int(length / cell_m) + 1
+    position, distance = np.zeros(n_stretches), np.full(n_stretches, -np.inf)
+    for p in range(len(rim_m)):
+        x, y = rim_m[p, 0] - start[0], rim_m[p, 1] - start[1]
+        s, d = x * along[0] + y * along[1], x * along[1] - y * along[0]
+        if 0 < s < length and abs(d) < 1.5 * cell_m:
+            stretch = int(s / cell_m)
+            if d > distance[stretch]:
+                position[stretch], distance[stretch] = s, d
+    is_met = distance > -np.inf
+    return position[is_met], distance[is_met]
+
+
+@njit(cache=True)
+def _slope(
+    start: Array, along: Array, length: float, rim_m: Array, cell_m: float
+) -> float:
+    """Return how fast the outermost points leave an edge to its right."""
+    s, d = _outermost(start, along, length, rim_m, cell_m)
+    if len(s) < 5:
+        return 0.0
+    s, d = s - s.mean(), d - d.mean()
+    return np.sum(s * d) / np.sum(s * s)
+
+
+@njit(cache=True)
+def _distance(
+    start: Array, along: Array, length: float, rim_m: Array, cell_m: float
+) -> float:
+    """Return how far the material reaches beyond an edge on its right [m]."""
+    d = _outermost(start, along, length, rim_m, cell_m)[1]
+    # A point is the mean of its voxel: the edge is a third of a cell further out.
+    return np.median(d) + cell_m / 3 if len(d) > 2 else 0.0

@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from placing.areas.columns import Columns, free_heights, sort_columns
+from placing.areas.columns import Columns, free_heights, points_at, sort_columns
 from placing.areas.outlines import open_holes, outlines
 from placing.areas.tiles import (
     Tiles,
@@ -27,6 +27,9 @@ from placing.scene import PlacingArea
 
 # ASSUME: a pin of this radius stands for an object whose size is not yet known.
 PIN_RADIUS_M = 0.02
+# ASSUME: a patch of less than two by two smallest squares is no place of its own, such
+# as the piece of a table that is above one chair pushed under it.
+SCRAP = 4
 
 
 @dataclass(frozen=True)
@@ -67,10 +70,12 @@ def find_areas(cloud: Cloud, config: AreaConfig) -> tuple[PlacingArea, ...]:
     pairs = position[pairs[is_free[pairs].all(axis=1)]]
     labels = group(tiles, pairs, config.clearance_step_m)
     labels = _flatten(tiles, labels, config.merge_m)
-    labels = _absorb(tiles, pairs, labels, config)
+    n_fewest = (config.min_width_m / config.cell_m) ** 2
+    labels = _absorb(tiles, pairs, labels, SCRAP * n_fewest)
     areas = [
         area
         for members in _members(labels)
+        if len(members) >= n_fewest  # Smaller groups cannot hold an area.
         for area in _areas(columns, tiles.take(members), config)
     ]
     return _name(areas, config.merge_m)
@@ -91,10 +96,14 @@ def clearance_at(
 def _flatten(tiles: Tiles, labels: NDArray, merge_m: float) -> NDArray[np.int64]:
     """Return labels with groups that are not level cut into level bands, shape (t,)."""
     labels = labels.copy()
-    for members in _members(labels):
+    lowest, highest = np.full((2, labels.max() + 1), [[np.inf], [-np.inf]])
+    np.minimum.at(lowest, labels, tiles.height_m)
+    np.maximum.at(highest, labels, tiles.height_m)
+    for number in np.flatnonzero(highest - lowest > 2 * merge_m):
+        members = np.flatnonzero(labels == number)
         height = tiles.height_m[members]
         rest = np.arange(len(members))
-        while np.ptp(height) > 2 * merge_m and len(rest):
+        while len(rest):
             band = ((height[rest] - height[rest].min()) / merge_m).astype(np.intp)
             fullest = np.bincount(band).argmax()
             peak = np.median(height[rest][band == fullest])
@@ -105,13 +114,12 @@ def _flatten(tiles: Tiles, labels: NDArray, merge_m: float) -> NDArray[np.int64]
 
 
 def _absorb(
-    tiles: Tiles, pairs: NDArray, labels: NDArray, config: AreaConfig
+    tiles: Tiles, pairs: NDArray, labels: NDArray, n_fewest: float
 ) -> NDArray[np.int64]:
-    """Return labels with groups too small for an area joined to a large neighbour.
+    """Return labels with groups of too few tiles joined to a large neighbour.
 
     A lamp above a desk lowers the free height on a patch that is still desk.
     """
-    n_fewest = (config.min_width_m / config.cell_m) ** 2
     size = np.bincount(labels)
     is_small = size < n_fewest
     crossing = pairs[~tiles.is_border[pairs].any(axis=1)]
@@ -136,8 +144,6 @@ def _members(labels: NDArray[np.int64]) -> list[NDArray[np.int64]]:
 
 def _areas(columns: Columns, tiles: Tiles, config: AreaConfig) -> list[PlacingArea]:
     """Return the areas of one group of tiles, without names."""
-    if len(tiles.cell) < (config.min_width_m / config.cell_m) ** 2:
-        return []
     height = float(np.median(tiles.height_m))
     points = _level_points(columns, tiles, config)
     polygons = outlines(
@@ -155,15 +161,8 @@ def _areas(columns: Columns, tiles: Tiles, config: AreaConfig) -> list[PlacingAr
 def _level_points(columns: Columns, tiles: Tiles, config: AreaConfig) -> NDArray:
     """Return the points that made the tiles, shape (n, 2) [m]."""
     column = tiles.cell[:, 0] * columns.shape[1] + tiles.cell[:, 1]
-    first, count = columns.start[column], np.diff(columns.start)[column]
-    tile = np.repeat(np.arange(len(column)), count)
-    inside = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
-    chosen = first[tile] + inside
-    is_level = (
-        np.abs(columns.points[chosen, 2] - tiles.height_m[tile]) <= config.merge_m
-    )
-    is_level &= columns.rise[chosen] > np.cos(config.max_tilt_rad)
-    return columns.points[chosen[is_level], :2].astype(float)
+    least_rise = np.cos(config.max_tilt_rad)
+    return points_at(columns, column, tiles.height_m, config.merge_m, least_rise)
 
 
 def _corners(polygon: shapely.Polygon) -> NDArray[np.float64]:

@@ -14,11 +14,12 @@ from scipy import ndimage
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from placing.areas.borders import cover
 from placing.areas.edges import fit_ring
+from placing.areas.masks import close, erode, keep_wide
 
 SLIT_M = 0.001
 """Width of the slit between a hole and the outside."""
-BLOCK = np.ones((3, 3), bool)
 
 
 def outlines(
@@ -38,32 +39,27 @@ def outlines(
     first = cells.min(axis=0) - border
     mask = np.zeros(cells.max(axis=0) - first + border + 1, bool)
     mask[tuple((cells - first).T)] = True
-    mask = ndimage.binary_closing(mask, BLOCK)
+    mask = close(mask)
     mask = ~keep_wide(~mask, n_cells)
     parts, n_parts = ndimage.label(keep_wide(mask, n_cells))
     low = origin_m + first * cell_m
-    is_inner = ndimage.binary_erosion(mask, BLOCK, iterations=2)
+    is_inner = erode(mask, 5)
     at = ((points_m - low) / cell_m).astype(np.int64)
     rim = points_m[~is_inner[tuple(at.T)]]
     found = []
     for number in range(1, n_parts + 1):
-        fine = fit_edges(_cover(parts == number, low, cell_m), rim, cell_m)
+        rough = shapely.transform(cover(parts == number), lambda c: low + c * cell_m)
+        fine = fit_edges(rough, rim, cell_m)
         # A strip covers parts of more cells than its width would fill.
         if not fine.buffer(cell_m / 4 - min_width_m / 2).is_empty:
             found.append(fine)
     return found
 
 
-def keep_wide(mask: NDArray[np.bool_], n_cells: int) -> NDArray[np.bool_]:
-    """Return the connected parts of a mask that hold a square of cells."""
-    seeds = ndimage.binary_erosion(mask, np.ones((n_cells, n_cells), bool))
-    return ndimage.binary_propagation(seeds, mask=mask) if seeds.any() else seeds
-
-
-def fit_edges(cover: BaseGeometry, rim_m: NDArray, cell_m: float) -> Polygon:
+def fit_edges(rough: Polygon, rim_m: NDArray, cell_m: float) -> Polygon:
     """Return the polygon with straight edges through the outermost points near it."""
-    # A cell counts when a part of it is covered, so the cover is too large.
-    inset = cover.buffer(-0.3 * cell_m, join_style="mitre")
+    # A cell counts when a part of it is covered, so they are too large.
+    inset = rough.buffer(-0.3 * cell_m, join_style="mitre")
     inset = max(shapely.get_parts(inset), key=lambda part: part.area)
     inset = shapely.geometry.polygon.orient(inset)
     rings = [
@@ -98,13 +94,3 @@ def heal(polygon_m: NDArray[np.float64]) -> BaseGeometry:
     """Return the polygon of a placing area with the slits to its holes closed."""
     grown = Polygon(polygon_m).buffer(SLIT_M, join_style="mitre")
     return grown.buffer(-SLIT_M, join_style="mitre")
-
-
-def _cover(mask: NDArray[np.bool_], low: NDArray, cell_m: float) -> BaseGeometry:
-    """Return the union of the cells of a mask, which is connected."""
-    step = np.diff(mask.astype(np.int8), axis=1, prepend=0, append=0)
-    i, j_first = np.nonzero(step == 1)
-    j_end = np.nonzero(step == -1)[1]
-    # Whole numbers: edges of neighbouring rows coincide exactly.
-    union = shapely.union_all(shapely.box(i, j_first, i + 1, j_end))
-    return shapely.transform(union, lambda corners: low + corners * cell_m)

@@ -74,16 +74,7 @@ def pair_neighbors(tiles: Tiles, merge_m: float) -> NDArray[np.int64]:
 
 def smooth_clearance(tiles: Tiles, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
     """Return the median clearance of each tile and its neighbours, shape (t,) [m]."""
-    values = np.full((len(tiles.cell), 5), np.nan)
-    values[:, 0] = tiles.clearance_m
-    both = np.concatenate([pairs, pairs[:, ::-1]])
-    both = both[np.argsort(both[:, 0], kind="stable")]
-    first = np.searchsorted(both[:, 0], both[:, 0])
-    rank = np.arange(len(both)) - first  # Which neighbour of its tile it is.
-    is_kept = rank < 4
-    values[both[is_kept, 0], rank[is_kept] + 1] = tiles.clearance_m[both[is_kept, 1]]
-    middle = np.sum(~np.isnan(values), axis=1) - 1  # Sorting puts NaN last.
-    return np.take_along_axis(np.sort(values), middle[:, None] // 2, axis=1)[:, 0]
+    return _medians(tiles.clearance_m, pairs)
 
 
 def group(
@@ -152,3 +143,21 @@ def _pair(
                     pairs[n, 0], pairs[n, 1] = t, s
                     n += 1
     return n
+
+
+@njit(cache=True)
+def _medians(values: NDArray, pairs: NDArray) -> NDArray:
+    """Return the lower median of each value and up to four neighbours, shape (t,)."""
+    around = np.empty((len(values), 5))
+    around[:, 0] = values
+    n = np.ones(len(values), np.int64)
+    for side in range(2):
+        for e in range(len(pairs)):
+            t = pairs[e, side]
+            if n[t] < 5:
+                around[t, n[t]] = values[pairs[e, 1 - side]]
+                n[t] += 1
+    middle = np.empty(len(values))
+    for t in range(len(values)):
+        middle[t] = np.sort(around[t, : n[t]])[(n[t] - 1) // 2]
+    return middle

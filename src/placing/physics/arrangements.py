@@ -3,24 +3,20 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-import numpy as np
 from shapely import MultiPoint, Polygon
 
 from placing import rigid
+from placing.dressing import WALLS, meshes_of
 from placing.physics.bodies import Body, Piece, body_of, fixed_pieces
 from placing.physics.settling import SettleConfig, Settled, settle
 from placing.rigid import Array
 from placing.scene import Arrangement, Layout, Placement, SceneObject
-from placing.shapes.building import walls_shape
-from placing.shapes.furniture import furniture_shape
 from placing.shapes.objects import object_shape
 
 TOLERANCE_M = 0.001
 """Guards the comparison of an outline with what touches it."""
 FLOOR_M = 0.01
 """What is carried by walls below this height is carried by the floor."""
-WALLS = "walls"
-"""Name of the walls, whose mesh holds the floor, among the fixed pieces."""
 
 
 @dataclass(frozen=True)
@@ -68,12 +64,8 @@ def bodies_of(objects: Iterable[SceneObject], margin_m: float) -> dict[str, Body
 
 def fixed_of(layout: Layout, margin_m: float) -> dict[str, tuple[Piece, ...]]:
     """Return walls and furniture in the world, by the id of the furniture."""
-    meshes = {WALLS: walls_shape(layout).mesh}
-    for piece in layout.furniture:
-        mesh = furniture_shape(piece.kind, piece.size_m).mesh.copy()
-        mesh.apply_transform(rigid.homogeneous(piece.T_world_furniture))
-        meshes[piece.furniture_id] = mesh
-    return {name: fixed_pieces(mesh, margin_m) for name, mesh in meshes.items()}
+    meshes = meshes_of(layout).items()
+    return {name: fixed_pieces(mesh, margin_m) for name, mesh in meshes}
 
 
 def check_arrangement(
@@ -84,7 +76,7 @@ def check_arrangement(
     config: SettleConfig,
 ) -> list[PlacementCheck]:
     """Return what is found about each placement when all settle together."""
-    poses = {p.object_id: pose_of(p) for p in arrangement.placements}
+    poses = {p.object_id: p.T_world_object for p in arrangement.placements}
     placed = {name: (bodies[name], T) for name, T in poses.items()}
     settled = settle(fixed, placed, config)
     checks = []
@@ -109,11 +101,6 @@ def check_arrangement(
             )
         )
     return checks
-
-
-def pose_of(placement: Placement) -> Array:
-    """Return the pose of a placed object in the world, shape (7,)."""
-    return np.concatenate([placement.orientation, placement.location])
 
 
 def is_inside(layout: Layout, corners_m: Array) -> bool:

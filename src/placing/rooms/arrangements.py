@@ -7,7 +7,6 @@ unless told otherwise.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from shapely import MultiPoint, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from placing import rigid
+from placing.dressing import standing_shape
 from placing.errors import BadInput, UnknownName, unknown
 from placing.rooms.checks import check_listed
 from placing.scene import (
@@ -25,8 +25,6 @@ from placing.scene import (
     Placement,
     SceneObject,
 )
-from placing.shapes.furniture import furniture_shape
-from placing.shapes.shape import Shape
 
 REACH_M = 0.001
 """Guards comparisons of lengths that people type in millimetres."""
@@ -45,34 +43,20 @@ class Level:
         return any(patch.buffer(REACH_M).covers(at) for patch in self.patches_m)
 
 
-@lru_cache(maxsize=1024)
-def shape_of(kind: str, size_m: tuple[float, float, float]) -> Shape:
-    """Return the shape of furniture, made once for all pieces that are alike."""
-    return furniture_shape(kind, size_m)
-
-
 def levels_of(piece: Furniture) -> tuple[Level, ...]:
     """Return the levels of a piece of furniture from below."""
     try:
-        supports = shape_of(piece.kind, piece.size_m).supports
+        supports = standing_shape(piece).supports
     except UnknownName as error:
         raise BadInput(f"furniture[{piece.furniture_id}].kind: {error}") from error
     heights = sorted({round(support.height_m, 3) for support in supports})
     levels = []
     for height in heights:
         same = [s for s in supports if round(s.height_m, 3) == height]
-        patches = tuple(
-            Polygon(rigid.apply(piece.T_world_furniture, raised(s.polygon_m))[:, :2])
-            for s in same
-        )
-        top = piece.T_world_furniture[6] + max(s.height_m for s in same)
+        patches = tuple(Polygon(s.polygon_m) for s in same)
+        top = max(s.height_m for s in same)
         levels.append(Level(patches, top, max(s.clearance_m for s in same)))
     return tuple(levels)
-
-
-def raised(polygon_m: Array) -> Array:
-    """Return the corners of a flat polygon at height 0, shape (v, 3)."""
-    return np.column_stack([polygon_m, np.zeros(len(polygon_m))])
 
 
 def read_arrangements(
@@ -172,8 +156,7 @@ def standing_size(item: SceneObject, orientation: Array) -> Array:
 def top_of(placement: Placement, item: SceneObject) -> Level:
     """Return the top of a placed object as a level that carries others."""
     half_height = np.abs(rigid.matrix(placement.orientation)[2]) @ item.size_m / 2
-    T_world_object = np.concatenate([placement.orientation, placement.location])
     corners = np.array(list(np.ndindex(2, 2, 2))) - 0.5
-    outline = rigid.apply(T_world_object, corners * item.size_m)[:, :2]
+    outline = rigid.apply(placement.T_world_object, corners * item.size_m)[:, :2]
     patch = MultiPoint(outline).convex_hull
     return Level((patch,), placement.location[2] + half_height, np.inf)

@@ -1,14 +1,14 @@
 """The catalogue of objects: what each one is, how large, how heavy, who may move it."""
 
-import csv
 from math import isfinite
 from pathlib import Path
 
 from placing.errors import BadInput
 from placing.scene import SceneObject
 from placing.shapes.objects import OBJECTS
+from placing.sheets import read_lines
 
-COLUMNS = (
+COLUMNS = [
     "object",
     "category",
     "shape",
@@ -18,7 +18,7 @@ COLUMNS = (
     "mass_kg",
     "has_front",
     "movable",
-)
+]
 # SOURCE: sizes and masses in `config/objects.csv` are those of everyday things, not of
 # particular products; what is movable is Table 1 of the paper.
 TRUTHS = {"True": True, "False": False}
@@ -27,33 +27,15 @@ TRUTHS = {"True": True, "False": False}
 def read_catalogue(path: Path) -> dict[str, SceneObject]:
     """Read the table of objects, in its order, by object id."""
     catalogue: dict[str, SceneObject] = {}
-    for line, row in _rows(path):
-        where = f"{path}, line {line}"
+    for line, row in read_lines(path, COLUMNS):
+        where = f"{path}: line {line}"
         item = _object_of(row, where)
         if item.object_id in catalogue:
             raise _bad(where, "object", item.object_id, "an id that is not used above")
         catalogue[item.object_id] = item
     if not catalogue:
-        raise BadInput(f"{path}: holds 0 objects; expected at least one line of them")
+        raise BadInput(f"{path}: no rows; expected at least one")
     return catalogue
-
-
-def _rows(path: Path) -> list[tuple[int, dict[str, str]]]:
-    """Return the lines of the table with their numbers in the file."""
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            reader = csv.reader(file)
-            lines = [(reader.line_num, cells) for cells in reader if cells]
-    except (OSError, UnicodeDecodeError) as error:
-        raise BadInput(f"{path}: cannot be read ({error}); expected a CSV") from error
-    header = lines[0][1] if lines else []
-    if tuple(header) != COLUMNS:
-        raise _bad(f"{path}, line 1", "header", ",".join(header), ",".join(COLUMNS))
-    for line, cells in lines[1:]:
-        if len(cells) != len(COLUMNS):
-            where, n = f"{path}, line {line}", len(COLUMNS)
-            raise BadInput(f"{where}: has {len(cells)} columns; expected {n}")
-    return [(line, dict(zip(COLUMNS, cells, strict=True))) for line, cells in lines[1:]]
 
 
 def _object_of(row: dict[str, str], where: str) -> SceneObject:
@@ -98,4 +80,4 @@ def _truth(row: dict[str, str], column: str, where: str) -> bool:
 
 def _bad(where: str, column: str, value: str, expected: str) -> BadInput:
     """Return the error for one cell of the table."""
-    return BadInput(f"{where}: {column} is {value!r}; expected {expected}")
+    return BadInput(f"{where}: {column}: value {value!r}; expected {expected}")

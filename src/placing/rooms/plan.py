@@ -15,9 +15,10 @@ from shapely import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from placing import rigid
-from placing.rooms.arrangements import shape_of
+from placing.dressing import standing_shape
 from placing.rooms.checks import footprint
 from placing.scene import Array, Furniture, Layout, Opening
+from placing.shapes.building import wall_axes
 
 HANGING = ("open_shelf", "picture", "wall_cabinet", "whiteboard", "window_sill")
 SEATS = ("armchair", "bar_stool", "bed", "bench", "chair", "corner_couch", "couch")
@@ -49,8 +50,7 @@ class Solid:
 
 def solid_of(piece: Furniture) -> Solid:
     """Return a piece of furniture as a mesh in the world."""
-    mesh = shape_of(piece.kind, piece.size_m).mesh.copy()
-    mesh.apply_transform(rigid.homogeneous(piece.T_world_furniture))
+    mesh = standing_shape(piece).mesh
     return Solid(piece, mesh, outline_of(mesh))
 
 
@@ -90,9 +90,7 @@ def overlaps(solids: list[Solid]) -> list[str]:
 
 def door_line(layout: Layout, door: Opening) -> LineString:
     """Return the threshold of a door on the floor [m]."""
-    corners = layout.outline_m
-    start, end = corners[door.wall], corners[(door.wall + 1) % len(corners)]
-    along = (end - start) / np.linalg.norm(end - start)
+    start, along, _ = wall_axes(layout.outline_m, door.wall)
     near = start + along * door.offset_m
     return LineString([near, near + along * door.width_m])
 
@@ -172,11 +170,10 @@ def back_of(piece: Furniture) -> Array:
 
 def carries(below: Furniture, solid: Solid) -> bool:
     """Return whether a piece has a support under the whole of another."""
-    T, place = below.T_world_furniture, solid.piece.T_world_furniture
-    for support in shape_of(below.kind, below.size_m).supports:
-        corners = np.column_stack([support.polygon_m, 0 * support.polygon_m[:, 0]])
-        patch = Polygon(rigid.apply(T, corners)[:, :2]).buffer(0.01)
-        is_level = abs(T[6] + support.height_m - place[6]) < 2e-3
+    bottom_m = solid.piece.T_world_furniture[6]
+    for support in standing_shape(below).supports:
+        patch = Polygon(support.polygon_m).buffer(0.01)
+        is_level = abs(support.height_m - bottom_m) < 2e-3
         if is_level and patch.covers(solid.outline):
             return True
     return False

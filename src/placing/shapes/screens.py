@@ -1,15 +1,7 @@
 """Shapes with a screen that faces the user, who is at +x."""
 
 from placing.shapes.keyboards import key_rows
-from placing.shapes.solids import (
-    Solid,
-    box,
-    cylinder,
-    hull,
-    slab,
-    tube,
-    union,
-)
+from placing.shapes.solids import Solid, box, cylinder, hull, slab, tube, union
 
 DARK = "#26282c"
 SILVER = "#c9ccd1"

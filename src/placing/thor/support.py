@@ -1,17 +1,12 @@
 """Whether the objects of a designer's room rest on something that a scan can find."""
 
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from shapely import Point, Polygon, distance
 
-from placing.rigid import apply
-from placing.scene import Furniture, Layout, Placement
-from placing.shapes.shape import Shape
+from placing.scene import Layout, Placement
 
-Array = NDArray[np.float64]
 Patch = tuple[Polygon, float]
 """Outline in the world and height [m] of something to stand on."""
 
@@ -75,19 +70,3 @@ def find_gap(
         return np.nan, "nothing below"
     gap = float(gaps[is_near][np.argmin(np.abs(gaps[is_near]))])
     return gap, "hovers above" if gap > 0 else "inside or below"
-
-
-def true_patches(layout: Layout, shape_of: Callable[[Furniture], Shape]) -> list[Patch]:
-    """Return the supports of all furniture and the floor in the world."""
-    patches = [(Polygon(layout.outline_m), 0.0)]
-    for furniture in layout.furniture:
-        for support in shape_of(furniture).supports:
-            flat = np.insert(support.polygon_m, 2, support.height_m, axis=1)
-            world = apply(furniture.T_world_furniture, flat)
-            patches.append((Polygon(world[:, :2]), float(world[0, 2])))
-    return patches
-
-
-def supported_share(checks: Iterable[SupportCheck]) -> float:
-    """Return the share of objects that are supported."""
-    return float(np.mean([check.is_supported for check in checks]))
