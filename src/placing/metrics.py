@@ -21,22 +21,19 @@ SCORE_COLUMNS = (
 )
 
 
-def errors(predicted: Array, labelled: Array) -> pd.DataFrame:
-    """Return the errors of each labelled object after matching, one row each.
+def errors(predicted: Array, labelled: Array) -> tuple[NDArray[np.intp], Array]:
+    """Return the prediction matched to each labelled object, and its errors.
 
-    `predicted` and `labelled` (n, 3) locations of the objects of one category.
+    `predicted` and `labelled` (n, 3) locations of the objects of one category. The
+    match (n,) indexes `predicted`; the errors (n, 3) are in the order of `ERRORS`.
     """
     offset = predicted[:, None] - labelled[None]  # (n, n, 3)
     horizontal = np.hypot(offset[..., 0], offset[..., 1])
     rows, columns = linear_sum_assignment(horizontal)
-    order = rows[np.argsort(columns)]
-    matched = predicted[order] - labelled
-    values = [
-        np.hypot(matched[:, 0], matched[:, 1]),
-        np.linalg.norm(matched, axis=1),
-        np.abs(matched[:, 2]),
-    ]
-    return pd.DataFrame(dict(zip(ERRORS, values, strict=True))).assign(match=order)
+    match = rows[np.argsort(columns)]
+    x, y, z = (predicted[match] - labelled).T
+    flat = np.hypot(x, y)
+    return match, np.column_stack([flat, np.hypot(flat, z), np.abs(z)])
 
 
 def summarise(scores: pd.DataFrame) -> pd.DataFrame:

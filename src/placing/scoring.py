@@ -8,20 +8,25 @@ which no method can be expected to beat.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import permutations
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
 from placing.answer_tables import LOCATION, PLACED
 from placing.candidates import Candidates
-from placing.metrics import errors
+from placing.metrics import ERRORS, errors
 from placing.scene import Arrangement, Scene, resting_point
 
 Array = NDArray[np.float64]
 
 LABELS = "labels"
 """The method that answers with another labelled arrangement."""
+
+
+COLUMNS = ["method", "labels", "object", "category", "status", *ERRORS, "nll"]
 
 
 @dataclass(frozen=True)
@@ -45,20 +50,20 @@ def score_scene(
     `densities` (p,) per key of `density_key`; nll is in nats, of a density per square
     metre of placing area. An object without a placement has errors NaN.
     """
-    resting = _resting_points(scene)
-    rows = []
-    for (method, question), table in answers.groupby(["method", "question"]):
+    nearest = _nearest_places(scene, candidates)
+    rows = list(_spread(scene))
+    keys = ["method", "question", "category"]
+    for key, table in answers.groupby(keys):
+        method, question, category = (str(part) for part in key)
+        density = densities[density_key(method, question, category)]
+        log_density = _log_density(density, spacing_m, config)
         given = table["labels"].iloc[0]
-        for category, wanted in table.groupby("category"):
-            density = densities[density_key(method, question, category)]
-            log_density = _log_density(density, spacing_m, config)
-            for labels in [given] if given else list(resting):
-                scored = _score(wanted, scene, labels, category)
-                place = _nearest(candidates, resting[labels], scored["object"])
-                scored["nll"] = -log_density[place]
-                rows.append(scored.assign(method=method, labels=labels))
-    table = pd.concat([*rows, *_spread(scene)], ignore_index=True)
-    return table.assign(scene=scene.scene)
+        for labels in [given] if given else list(nearest):
+            for name, status, found in _score(table, scene, labels, category):
+                nll = -log_density[nearest[labels][name]]
+                rows.append((method, labels, name, category, status, *found, nll))
+    scores = pd.DataFrame(rows, columns=COLUMNS)
+    return scores.assign(scene=scene.scene)
 
 
 def density_key(method: str, question: str, category: str) -> str:
@@ -68,43 +73,29 @@ def density_key(method: str, question: str, category: str) -> str:
 
 def _score(
     wanted: pd.DataFrame, scene: Scene, labels: str, category: str
-) -> pd.DataFrame:
-    """Return the errors of the objects of one category against one arrangement."""
+) -> Iterator[tuple[str, str, Array]]:
+    """Yield each labelled object of a category, its status and its errors (3,)."""
     labelled = _locations(scene, labels, category)
-    placed = wanted[wanted["status"] == PLACED].set_index("object")
-    table = pd.DataFrame({"object": list(labelled), "category": category})
-    if len(placed) < len(labelled):
-        missing = set(labelled) - set(placed.index)
-        reason = wanted.set_index("object")["status"]
-        status = [reason[o] if o in missing else PLACED for o in labelled]
-        placed_names = [o for o in labelled if o not in missing]
-        table["status"] = status
-        at = placed.loc[placed_names, LOCATION].to_numpy(float)
-        to = np.array([labelled[o] for o in placed_names]).reshape(-1, 3)
-        found = errors(at, to).assign(object=placed_names).drop(columns="match")
-        return table.merge(found, on="object", how="left")
-    at = placed.loc[list(labelled), LOCATION].to_numpy(float)
-    found = errors(at, np.array(list(labelled.values()))).drop(columns="match")
-    return pd.concat([table.assign(status=PLACED), found], axis=1)
+    status = dict(zip(wanted["object"], wanted["status"], strict=True))
+    location = dict(zip(wanted["object"], wanted[LOCATION].to_numpy(), strict=True))
+    placed = [name for name in labelled if status[name] == PLACED]
+    at = np.array([location[name] for name in placed], float).reshape(-1, 3)
+    to = np.array([labelled[name] for name in placed]).reshape(-1, 3)
+    found = dict(zip(placed, errors(at, to)[1], strict=True))
+    for name in labelled:
+        yield name, status[name], found.get(name, np.full(3, np.nan))
 
 
-def _spread(scene: Scene) -> Iterator[pd.DataFrame]:
+def _spread(scene: Scene) -> Iterator[tuple[object, ...]]:
     """Yield the errors of each labelled arrangement against each other one."""
     categories = sorted({item.category for item in scene.objects})
-    for one in scene.arrangements:
-        for other in scene.arrangements:
-            for category in categories if one is not other else []:
-                at = np.array(list(_locations(scene, other.name, category).values()))
-                labelled = _locations(scene, one.name, category)
-                found = errors(at, np.array(list(labelled.values())))
-                yield found.drop(columns="match").assign(
-                    object=list(labelled),
-                    category=category,
-                    status=PLACED,
-                    method=LABELS,
-                    labels=one.name,
-                    nll=np.nan,
-                )
+    for one, other in permutations(scene.arrangements, 2):
+        for category in categories:
+            at = np.array(list(_locations(scene, other.name, category).values()))
+            labelled = _locations(scene, one.name, category)
+            _, found = errors(at, np.array(list(labelled.values())))
+            for name, values in zip(labelled, found, strict=True):
+                yield LABELS, one.name, name, category, PLACED, *values, np.nan
 
 
 def _locations(scene: Scene, labels: str, category: str) -> dict[str, Array]:
@@ -115,27 +106,19 @@ def _locations(scene: Scene, labels: str, category: str) -> dict[str, Array]:
     return {p.object_id: p.location for p in placements if p.object_id in ids}
 
 
-def _resting_points(scene: Scene) -> dict[str, dict[str, Array]]:
-    """Return the point each object rests on, by arrangement and object."""
+def _nearest_places(scene: Scene, candidates: Candidates) -> dict[str, dict[str, int]]:
+    """Return the place nearest to where each labelled object rests, by arrangement."""
     items = {item.object_id: item for item in scene.objects}
+    places = KDTree(candidates.location)
 
-    def of(arrangement: Arrangement) -> dict[str, Array]:
-        return {
-            p.object_id: resting_point(items[p.object_id], p)
-            for p in arrangement.placements
-        }
+    def of(arrangement: Arrangement) -> dict[str, int]:
+        placements = arrangement.placements
+        resting = [resting_point(items[p.object_id], p) for p in placements]
+        nearest = places.query(np.array(resting))[1]
+        names = [p.object_id for p in placements]
+        return dict(zip(names, nearest.tolist(), strict=True))
 
     return {arrangement.name: of(arrangement) for arrangement in scene.arrangements}
-
-
-def _nearest(
-    candidates: Candidates, resting: Mapping[str, Array], objects: pd.Series
-) -> list[int]:
-    """Return the place nearest to where each labelled object rests."""
-    return [
-        int(np.argmin(((candidates.location - resting[name]) ** 2).sum(1)))
-        for name in objects
-    ]
 
 
 def _log_density(density: Array, spacing_m: float, config: ScoringConfig) -> Array:

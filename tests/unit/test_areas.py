@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 import shapely
 import trimesh
+from scipy import ndimage
 from shapely import Polygon, box
 
+from placing.areas.borders import cover
 from placing.areas.columns import CONTACT_M, DOWN, MARGIN_M, free_heights, sort_columns
 from placing.areas.coverage import compare, solids_of, tabulate, true_areas
 from placing.areas.finder import AreaConfig, clearance_at, find_areas
+from placing.areas.masks import close, erode
 from placing.areas.outlines import heal, open_holes
 from placing.clouds.cloud import CloudConfig, preprocess, sample_cloud
 from placing.clouds.ply import Cloud
@@ -208,6 +211,27 @@ def test_a_slit_opens_every_hole_and_healing_closes_it() -> None:
     assert not opened.interiors
     corners = np.asarray(opened.exterior.coords)[:-1]
     assert heal(corners).symmetric_difference(outline).area < 1e-4
+
+
+def test_the_border_of_cells_is_that_of_the_union_of_their_squares() -> None:
+    rng = np.random.default_rng(2)
+    for _ in range(30):
+        parts, n_parts = ndimage.label(rng.random((20, 30)) < 0.65)
+        for number in range(1, n_parts + 1):
+            mask = parts == number
+            squares = [box(i, j, i + 1, j + 1) for i, j in np.argwhere(mask)]
+            polygon = cover(mask)
+            assert polygon.is_valid
+            assert polygon.equals(shapely.union_all(squares))
+
+
+@pytest.mark.parametrize("n_cells", [2, 3, 4, 5])
+def test_masks_erode_and_close_like_those_of_scipy(n_cells: int) -> None:
+    mask = np.pad(np.random.default_rng(n_cells).random((40, 50)) < 0.8, 6)
+    square = np.ones((n_cells, n_cells), bool)
+    assert np.array_equal(erode(mask, n_cells), ndimage.binary_erosion(mask, square))
+    closed = ndimage.binary_closing(mask, np.ones((3, 3), bool))
+    assert np.array_equal(close(mask), closed)
 
 
 def layout() -> Layout:

@@ -124,6 +124,17 @@ def test_outliers_are_the_points_with_few_others_around() -> None:
     assert np.array_equal(drop_outliers(cloud, CONFIG).points, plane.points)
 
 
+def test_outliers_are_counted_like_by_comparing_all_pairs() -> None:
+    rng = np.random.default_rng(5)
+    points = rng.uniform(0, 0.6, (700, 3)).astype(np.float32)
+    cloud = Cloud(points, np.zeros_like(points), np.zeros((700, 3), np.uint8))
+    cells = ((points - points.min(axis=0) + 0.05) / 0.05).astype(int)
+    steps = np.abs(cells[:, None] - cells[None]).max(axis=2)
+    is_kept = (steps <= 1).sum(axis=1) > CONFIG.outlier_neighbors
+    assert 0 < is_kept.sum() < 700
+    assert np.array_equal(drop_outliers(cloud, CONFIG).points, points[is_kept])
+
+
 @pytest.mark.parametrize("has_normals", [True, False])
 def test_a_tilted_raised_room_comes_out_level_with_its_floor_at_zero(
     has_normals: bool,

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from placing.metrics import errors, summarise
+from placing.metrics import ERRORS, errors, summarise
 
 
 def test_matching_is_the_best_of_all_permutations():
@@ -16,15 +16,18 @@ def test_matching_is_the_best_of_all_permutations():
         np.hypot(*(predicted[list(order)] - labelled)[:, :2].T).sum()
         for order in permutations(range(4))
     )
-    found = errors(predicted, labelled)
-    assert found["location_error_m"].sum() == pytest.approx(best)
+    match, found = errors(predicted, labelled)
+    assert found[:, 0].sum() == pytest.approx(best)
+    direct = np.hypot(*(predicted[match] - labelled)[:, :2].T)
+    np.testing.assert_allclose(found[:, 0], direct)
 
 
 def test_location_error_is_horizontal_and_height_has_its_own():
-    found = errors(np.array([[3.0, 4.0, 1.0]]), np.array([[0.0, 0.0, 0.5]])).iloc[0]
-    assert found["location_error_m"] == pytest.approx(5)
-    assert found["height_error_m"] == pytest.approx(0.5)
-    assert found["location3d_error_m"] == pytest.approx(np.hypot(5, 0.5))
+    _, found = errors(np.array([[3.0, 4.0, 1.0]]), np.array([[0.0, 0.0, 0.5]]))
+    by_name = dict(zip(ERRORS, found[0], strict=True))
+    assert by_name["location_error_m"] == pytest.approx(5)
+    assert by_name["height_error_m"] == pytest.approx(0.5)
+    assert by_name["location3d_error_m"] == pytest.approx(np.hypot(5, 0.5))
 
 
 def scores(rows):

@@ -6,6 +6,8 @@ holes are clockwise. Rings of a connected set may touch in corners, but never cr
 Letters for shapes: v corners.
 """
 
+from itertools import pairwise
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -15,8 +17,8 @@ from shapely import Polygon
 def cover(mask: NDArray[np.bool_]) -> Polygon:
     """Return the polygon of a connected mask, cells as squares of width 1."""
     corners, start = _trace(np.pad(mask, 1))
-    rings = [corners[a:b] - 1 for a, b in zip(start[:-1], start[1:], strict=True)]
-    # The walk starts in the lowest row: no hole reaches that far.
+    rings = [corners[a:b] - 1 for a, b in pairwise(start)]
+    # Rings are found from the lowest row upward, so the outer one comes first.
     return Polygon(rings[0], rings[1:])
 
 
@@ -29,7 +31,7 @@ def _trace(mask: NDArray) -> tuple[NDArray, NDArray]:
         for j in range(1, mask.shape[1] - 1):
             is_new[i, j] = mask[i, j] and not mask[i, j - 1]
             n_edges += is_new[i, j]
-    # Every stretch along x has two corners, and as many go forth as back.
+    # As many edges go back as forth, and each has two corners at most.
     corners = np.empty((4 * n_edges, 2), np.int64)
     start = np.zeros(n_edges + 1, np.int64)
     n_rings = 0

@@ -112,7 +112,7 @@ def thin(cloud: Cloud, voxel_m: float) -> Cloud:
 
 def drop_outliers(cloud: Cloud, config: CloudConfig) -> Cloud:
     """Return the cloud without points that have few others around them."""
-    # Counting in cells takes a tenth of the time of searching nearest neighbours.
+    # Counting in cells is more than ten times as fast as a search for neighbours.
     low = lowest(cloud.points) - config.outlier_cell_m
     keys, shape = cell_keys(cloud.points, low, config.outlier_cell_m)
     n_around = count_around(keys, np.argsort(keys, kind="stable"), shape)

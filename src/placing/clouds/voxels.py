@@ -1,9 +1,9 @@
 """Cells of a cubic grid: which points share one, and how many are around each.
 
-All loops over points are compiled. The points are put in order once, by whole numbers
-that name their cells; what belongs to a cell is then a stretch of that order.
+Points are put in order by whole numbers that name their cells: what belongs to a cell
+is a stretch of that order. All loops over points are compiled.
 
-Letters for shapes: n points, c cells that hold points, m voxels and sides.
+Letters for shapes: n points, m voxels and sides.
 """
 
 import numpy as np

@@ -81,7 +81,7 @@ def _matched(shown: pd.DataFrame, targets: Mapping[str, Placement]) -> list[str]
     for _, of_category in shown.groupby("category"):
         names = [name for name in of_category["object"] if name in targets]
         to = np.array([targets[name].location for name in names])
-        match = errors(of_category[LOCATION].to_numpy(float), to)["match"]
+        match, _ = errors(of_category[LOCATION].to_numpy(float), to)
         matched[of_category.index[match]] = names
     return matched.tolist()
 
