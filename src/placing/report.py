@@ -53,6 +53,27 @@ def figure6_markdown(figure6: pd.DataFrame, paper: pd.DataFrame) -> str:
     return "\n\n".join(parts) + "\n"
 
 
+def averages_by_task(figure6: pd.DataFrame) -> str:
+    """Return the averages of every data set and task as one Markdown table."""
+    lines = ["| data set | task | method | location [m] | height [m] | nll | n |"]
+    lines += ["|-|-|-|-:|-:|-:|-:|"]
+    average = figure6[figure6["category"] == "AVG"]
+    for dataset in sorted(average["dataset"].unique()):
+        for task in TITLES:
+            of_task = average[
+                (average["dataset"] == dataset) & (average["task"] == task)
+            ]
+            named = of_task.set_index("method")
+            for method in (m for m in ORDER if m in named.index):
+                row = named.loc[method]
+                cells = [f"`{name}`" for name in (dataset, task, method)]
+                cells += [_with_error(row["location_m"], row["location_se_m"])]
+                cells += [_with_error(row["height_m"], row["height_se_m"], 3)]
+                cells += [_number(row["nll"]), f"{row['n']:.0f}"]
+                lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join([*lines, "", NOTE])
+
+
 def write_text(path: Path, text: str) -> None:
     """Write a text, whole or not at all."""
     with replacing(path) as part:
@@ -66,7 +87,7 @@ def _averages(figure6: pd.DataFrame, paper: pd.DataFrame) -> str:
     average = figure6[figure6["category"] == "AVG"].set_index("method")
     for method in (m for m in ORDER if m in average.index):
         row = average.loc[method]
-        nll = "–" if pd.isna(row["nll"]) else f"{row['nll']:.2f}"
+        nll = _number(row["nll"])
         location = _with_error(row["location_m"], row["location_se_m"])
         height = _with_error(row["height_m"], row["height_se_m"], 3)
         space = f"{row['location3d_m']:.2f}"
@@ -115,3 +136,8 @@ def _with_error(value: float, error: float, digits: int = 2) -> str:
     """Return mean ± standard error, the mean alone where there is no error."""
     shown = f"{value:.{digits}f}"
     return shown if pd.isna(error) else f"{shown} ± {error:.{digits}f}"
+
+
+def _number(value: float) -> str:
+    """Return a number with two decimals, a dash where there is none."""
+    return "–" if pd.isna(value) else f"{value:.2f}"

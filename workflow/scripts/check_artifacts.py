@@ -17,6 +17,8 @@ log = logging.getLogger(__name__)
 
 TASKS = ("filled", "empty")
 METHODS = ("dp", "height", "room")
+MIN_SUPPORTED = 0.95
+"""Share of the objects of designers' rooms that rest on a placing area, at least."""
 MOST_LINES = 20
 """So many broken claims are listed; the others are counted."""
 
@@ -117,12 +119,26 @@ def every_scene_has_recordings(results: Path, folds: Folds) -> Iterator[str]:
                 yield f"{path} is missing or empty"
 
 
+def what_designers_placed_is_supported(results: Path, folds: Folds) -> Iterator[str]:
+def designers_objects_are_supported(results: Path, folds: Folds) -> Iterator[str]:
+    path = results / "checks" / "support.csv"
+    if not path.exists():  # only the rooms of designers have this check
+        return
+    support = pd.read_csv(path, keep_default_na=False)
+    missed = support[support["is_supported"].astype(str) != "True"]
+    if len(missed) > (1 - MIN_SUPPORTED) * len(support):
+        yield f"{path}: {len(missed)} of {len(support)} objects rest on no area"
+    for row in missed[missed["reason"] == ""].itertuples():
+        yield f"{path}: {row.scene} {row.object} rests on no area without a reason"
+
+
 CLAIMS: tuple[Callable[[Path, Folds], Iterator[str]], ...] = (
     every_scene_is_scored_in_both_tasks,
     errors_are_lengths,
     unplaced_objects_have_no_error,
     no_scene_is_arranged_by_what_was_learned_from_it,
     every_scene_has_recordings,
+    designers_objects_are_supported,
 )
 
 
