@@ -119,8 +119,8 @@ def every_scene_has_recordings(results: Path, folds: Folds) -> Iterator[str]:
                 yield f"{path} is missing or empty"
 
 
-def what_designers_placed_is_supported(results: Path, folds: Folds) -> Iterator[str]:
 def designers_objects_are_supported(results: Path, folds: Folds) -> Iterator[str]:
+    """Yield that too few objects of designers rest on an area, or a miss unexplained."""
     path = results / "checks" / "support.csv"
     if not path.exists():  # only the rooms of designers have this check
         return

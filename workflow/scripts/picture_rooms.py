@@ -27,7 +27,7 @@ def main(
     pictures: Path,
     sheet_rooms: Path,
     sheet_arrangements: Path,
-    size: tuple[int, int] = (1200, 900),
+    size: tuple[int, int] = (880, 660),
 ) -> None:
     """Draw pictures of rooms and of their labelled arrangements, and sheets of both.
 

@@ -15,7 +15,7 @@ from placing.recordings.thinning import evenly, thin
 Array = NDArray[np.float64]
 
 VALID_POSES = 200
-SWEEPS = 150
+SWEEPS = 40
 """At most so many of each are kept; a recording is for looking at."""
 HEAD_RADIUS_M, LIMB_RADIUS_M = 0.095, 0.028
 FIGURE = (

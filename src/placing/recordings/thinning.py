@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from placing import seeds
 
-FINEST_M = 0.01
+FINEST_M = 0.025
 """Spacing below which a cloud is not worth looking at."""
 
 
