@@ -5,6 +5,7 @@ OUTPUTS
     results/{dataset}/checks/areas.csv           placing areas found, by furniture kind
     results/rooms/checks/arrangements.csv        whether what labellers placed stays put
     results/thor/checks/support.csv              whether what designers placed is supported
+    results/thor/checks/left_out.csv             what became of each type of thing
     results/{dataset}/checks/passed.txt          every claim about the artifacts holds
     results/run.json                             what was run, on what, and how long
 """
@@ -82,6 +83,7 @@ rule check_support:
         types="config/thor_types.csv",
     output:
         support="results/thor/checks/support.csv",
+        left_out="results/thor/checks/left_out.csv",
     log:
         "results/logs/check_support.log",
     benchmark:
@@ -94,6 +96,7 @@ rule check_support:
             --scenes {input.scenes:q} \
             --types {input.types:q} \
             --support {output.support:q} \
+            --left-out {output.left_out:q} \
             2>{log:q}
         """
 

@@ -120,7 +120,7 @@ def every_scene_has_recordings(results: Path, folds: Folds) -> Iterator[str]:
 
 
 def designers_objects_are_supported(results: Path, folds: Folds) -> Iterator[str]:
-    """Yield that too few objects of designers rest on an area, or a miss unexplained."""
+    """Yield that too few objects rest on an area, and misses without a reason."""
     path = results / "checks" / "support.csv"
     if not path.exists():  # only the rooms of designers have this check
         return

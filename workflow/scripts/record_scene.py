@@ -7,11 +7,13 @@ from tqdm import tqdm
 
 from command import run
 from placing.answer_tables import PLACEMENT_COLUMNS, POSE_COLUMNS
+from placing.answering import METHODS
 from placing.artifacts.densities import read_densities
 from placing.artifacts.features import read_features
 from placing.artifacts.formats import read_table
 from placing.artifacts.scenes import read_scene
 from placing.clouds.ply import read_ply
+from placing.errors import unknown
 from placing.metrics import SCORE_COLUMNS
 from placing.recordings.assembly import Job, scene_recording
 from placing.recordings.writer import write_recording
@@ -35,6 +37,8 @@ def main(
     seed: int,
 ) -> None:
     """Record every scene of a fold and task."""
+    if method not in METHODS:
+        raise unknown("method", method, list(METHODS))
     job = Job(dataset, task, method, fold, seed)
     tables = [
         read_table(arrangements, PLACEMENT_COLUMNS),

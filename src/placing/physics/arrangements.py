@@ -147,6 +147,15 @@ def reason_of(
     return ""
 
 
+# ASSUME: what the paper's Figure 3 shows of each kind of room, in categories.
+NEEDED = {
+    "kitchen": ("dishware", "food", "pan", "utensil"),
+    "livingroom": ("book", "cushion", "decoration", "remote", "tv"),
+    "office": ("book", "pen", "trash_bin"),
+}
+"""Categories that a room of each kind must hold an object of."""
+
+
 def complaints_about(layout: Layout, config: SettleConfig) -> list[str]:
     """Return a line for each rule that the arrangements of a room as a whole break."""
     least, most = config.min_arrangements, config.max_arrangements
@@ -156,6 +165,12 @@ def complaints_about(layout: Layout, config: SettleConfig) -> list[str]:
             f"{layout.scene}: has {len(layout.arrangements)} arrangements, "
             f"expected {least} to {most}"
         )
+    held = {item.category for item in layout.objects}
+    complaints += [
+        f"{layout.scene}: no object of category {name}, as every {layout.kind} needs"
+        for name in NEEDED.get(layout.kind, ())
+        if name not in held
+    ]
     listed = {item.object_id for item in layout.objects}
     for arrangement in layout.arrangements:
         missing = listed - {p.object_id for p in arrangement.placements}
