@@ -1,7 +1,7 @@
 """The shapes of a layout in the world: walls, furniture and placed objects."""
 
 from dataclasses import replace
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import numpy as np
 import trimesh
@@ -46,13 +46,19 @@ def _shape_of(kind: str, size_m: tuple[float, float, float]) -> Shape:
     return furniture_shape(kind, size_m)
 
 
+@cache
+def _object_shape(shape: str, size_m: tuple[float, float, float]) -> Shape:
+    """Return the shape of an object, made once for all arrangements."""
+    return object_shape(shape, size_m)
+
+
 def object_meshes(layout: Layout, arrangement: Arrangement) -> Meshes:
     """Return the objects of an arrangement in the world, by object id."""
     objects = {item.object_id: item for item in layout.objects}
     meshes = {}
     for placement in arrangement.placements:
         item = objects[placement.object_id]
-        mesh = object_shape(item.shape, item.size_m).mesh
+        mesh = _object_shape(item.shape, item.size_m).mesh.copy()
         mesh.apply_transform(rigid.homogeneous(placement.T_world_object))
         meshes[placement.object_id] = mesh
     return meshes

@@ -10,6 +10,7 @@ Shapes: q poses, v voxels.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numba import njit
@@ -147,6 +148,7 @@ def _base_voxels(places: Array, origin: Array, voxel_m: float) -> NDArray[np.int
     return cells
 
 
+@lru_cache(maxsize=256)
 def _body_voxels(kind: str, yaw: float, voxel_m: float) -> NDArray[np.int64]:
     """Return the voxels that a body fills, relative to its base voxel, shape (v, 3)."""
     spheres = skeleton.capsule_samples(kind)
