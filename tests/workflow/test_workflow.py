@@ -14,6 +14,8 @@ import pytest
 ROOT = Path(__file__).parents[2]
 HERE = Path(__file__).parent
 ACCEPTED = "Specify a conda environment or container for each rule."
+PART = "results/rooms/tables/figure6.csv"
+"""A target that takes the road from rooms to scores, in half the time of all."""
 NOTHING = "Nothing to be done (all requested files are present and up to date)."
 # Recordings hold random identifiers, pictures of text depend on nothing checked here,
 # and times differ in every run.
@@ -33,9 +35,9 @@ def copy_project(folder):
     return folder
 
 
-def start(folder, *words, **kwargs):
+def start(folder, *words, configs=("small.yaml",), **kwargs):
     """Start Snakemake in a project."""
-    command = [sys.executable, "-m", "snakemake", *words, "--configfile", "small.yaml"]
+    command = [sys.executable, "-m", "snakemake", *words, "--configfile", *configs]
     environment = os.environ | {
         "PYTHONPATH": str(folder / "src"),
         "NUMBA_CACHE_DIR": str(ROOT / ".cache" / "numba"),
@@ -51,9 +53,9 @@ def start(folder, *words, **kwargs):
     )
 
 
-def snakemake(folder, *words, code=0):
+def snakemake(folder, *words, code=0, **kwargs):
     """Return what Snakemake says, after checking how it ended."""
-    process = start(folder, *words)
+    process = start(folder, *words, **kwargs)
     said, _ = process.communicate(timeout=600)
     assert process.returncode == code, said[-5000:]
     return said
@@ -137,7 +139,7 @@ def test_a_changed_number_runs_the_stages_of_its_section(finished):
     changed = finished / "changed.yaml"
     changed.write_text("scoring: {uniform_share: 0.02}\n")
     # The last of several configuration files wins.
-    said = snakemake(finished, "-n", "--configfile", "small.yaml", "changed.yaml")
+    said = snakemake(finished, "-n", configs=("small.yaml", "changed.yaml"))
     jobs = planned(said)
     assert jobs["score_arrangement"] == 8
     assert not {"preprocess_cloud", "learn_theta", "sample_arrangement"} & set(jobs)
@@ -153,13 +155,15 @@ def test_one_fold_can_run_again_alone(finished):
 
 @pytest.mark.slow
 def test_results_do_not_depend_on_the_number_of_cores(finished, project):
-    snakemake(project, "-j1")
-    assert artifacts(project) == artifacts(finished) != {}
+    snakemake(project, "-j1", PART)
+    found = artifacts(project)
+    assert found
+    assert found.items() <= artifacts(finished).items()
 
 
 @pytest.mark.slow
 def test_a_killed_run_continues_and_gives_the_same(finished, project):
-    process = start(project, "-j2", start_new_session=True)
+    process = start(project, "-j2", PART, start_new_session=True)
     waiting_until = time.monotonic() + 300
     while not list(project.glob("results/*/scenes/fold*/*.json")):
         assert process.poll() is None, "the run ended before it could be killed"
@@ -168,8 +172,8 @@ def test_a_killed_run_continues_and_gives_the_same(finished, project):
     os.killpg(process.pid, signal.SIGKILL)
     process.communicate()
     snakemake(project, "--unlock")
-    snakemake(project, "-j2", "--rerun-incomplete")
-    assert artifacts(project) == artifacts(finished)
+    snakemake(project, "-j2", PART, "--rerun-incomplete")
+    assert artifacts(project).items() <= artifacts(finished).items()
 
 
 @pytest.mark.parametrize(
