@@ -234,14 +234,13 @@ def test_a_mistake_in_the_sheet_of_scenes_is_one_line(project, row, said):
 
 
 def test_commands_run_outside_snakemake_give_the_same_bytes(finished):
-    said = snakemake(
-        finished, "-n", "-p", "-R", "find_areas", "--", "results/rooms/scenes/fold0"
-    )
+    target = "results/rooms/scenes/fold0"
+    said = snakemake(finished, "-n", "-p", target, "-R", "find_areas")
     command = said[said.index("python workflow/scripts/find_areas.py") :]
     command = command[: command.index("2>")].replace("\\\n", " ")
     folder = finished / "results" / "rooms" / "scenes" / "fold0"
     before = {path.name: path.read_bytes() for path in folder.glob("*.json")}
-    again = command.replace("results/rooms/scenes/fold0", "again")
+    again = command.replace(target, "again")
     environment = os.environ | {
         "PYTHONPATH": str(finished / "src"),
         "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",
