@@ -50,7 +50,7 @@ class UseOfObject:
 
         `half_height_m` lifts the centre of the object above its place.
         """
-        self.theta, self.poses, self.n_places = theta, poses, len(candidates.location)
+        self.theta, self.poses = theta, poses
         self._spacing, self._config = spacing_m, config
         self._cells = _cells(candidates.location, spacing_m)
         self._pose_cells = _cells(poses.location, spacing_m)

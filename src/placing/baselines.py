@@ -39,10 +39,6 @@ class BaselinesConfig:
     """How many objects the histogram of all categories counts for in each."""
 
 
-Histograms = Mapping[str, NDArray[np.float64]]
-"""Share of each bin per category, each summing to 1."""
-
-
 def learn_histograms(
     values: Mapping[str, Array], method: str, config: BaselinesConfig
 ) -> dict[str, Array]:

@@ -19,10 +19,9 @@ from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from placing.areas.outlines import heal
-from placing.rigid import apply, homogeneous
+from placing.dressing import standing_shape
 from placing.scene import Layout, PlacingArea
 from placing.shapes.building import walls_shape
-from placing.shapes.furniture import furniture_shape
 from placing.shapes.shape import Shape
 
 CONTACT_M = 0.002
@@ -58,18 +57,8 @@ def solids_of(layout: Layout) -> list[Solid]:
     """Return building and furniture of a layout in the world, the building first."""
     solids = [Solid("floor", walls := walls_shape(layout), _manifold(walls.mesh))]
     for furniture in layout.furniture:
-        T = furniture.T_world_furniture
-        shape = furniture_shape(furniture.kind, furniture.size_m)
-        mesh = shape.mesh.copy().apply_transform(homogeneous(T))
-        supports = []
-        for support in shape.supports:
-            flat = np.insert(support.polygon_m, 2, support.height_m, axis=1)  # (v, 3)
-            world = apply(T, flat)
-            moved = {"polygon_m": world[:, :2], "height_m": float(world[0, 2])}
-            supports.append(type(support)(**{**vars(support), **moved}))
-        solids.append(
-            Solid(furniture.kind, Shape(mesh, tuple(supports)), _manifold(mesh))
-        )
+        shape = standing_shape(furniture)
+        solids.append(Solid(furniture.kind, shape, _manifold(shape.mesh)))
     return solids
 
 

@@ -20,7 +20,6 @@ from placing.shapes.solids import (
 )
 
 WOOD = "#b98552"
-DARK_WOOD = "#8a5a33"
 BLACK = "#2b2d31"
 STEEL = "#c3c8cc"
 
