@@ -5,7 +5,7 @@ import pandas as pd
 
 from placing import skeleton
 from placing.answering import Answer
-from placing.dpmm import Chain
+from placing.dpmm import Chains
 from placing.human import HumanPoses
 from placing.tasks import Question
 
@@ -45,21 +45,25 @@ def pose_rows(
     task: str,
     method: str,
     question: Question,
-    chain: Chain,
+    chains: Chains,
     poses: HumanPoses,
 ) -> pd.DataFrame:
-    """Return one row per sample and pose in use, poses numbered by object count."""
-    n_samples, n_objects = chain.choice.shape
+    """Return one row per sample and pose in use, poses numbered by object count.
+
+    The samples are those of the first chain.
+    """
+    choice, pose, log_joint = chains.choice[0], chains.pose[0], chains.log_joint[0]
+    n_samples, n_objects = choice.shape
     sample = np.repeat(np.arange(n_samples), n_objects)
-    key = sample * n_objects + chain.choice.ravel()
+    key = sample * n_objects + choice.ravel()
     _, first, members = np.unique(key, return_index=True, return_counts=True)
     order = np.lexsort((first, -members, sample[first]))
     first, members = first[order], members[order]
-    of_sample, h = sample[first], chain.pose.ravel()[first]
+    of_sample, h = sample[first], pose.ravel()[first]
     starts = np.searchsorted(of_sample, np.arange(n_samples))
     x, y, z = poses.location[h].T
     columns = [scene, task, method, question.name, of_sample]
     columns += [np.arange(len(h)) - starts[of_sample]]
     columns += [np.array(skeleton.KINDS)[poses.kind[h]], x, y, z, poses.yaw[h]]
-    columns += [members, chain.log_joint[of_sample]]
+    columns += [members, log_joint[of_sample]]
     return pd.DataFrame(dict(zip(POSE_COLUMNS, columns, strict=True)))

@@ -34,8 +34,8 @@ class Answer:
     """The placement of each wanted object; None where no place fits."""
     densities: Mapping[str, Array]
     """(p,) per wanted category; 0 at places that fit no object of it."""
-    chain: dpmm.Chain | None
-    """The sampled poses of a method with humans; columns are given, then wanted."""
+    chains: dpmm.Chains | None
+    """The sampled poses of a method with humans; objects are given, then wanted."""
 
 
 def answer(
@@ -47,10 +47,12 @@ def answer(
         by_category.setdefault(item.category, []).append(item)
     given = [model.given_box(question.labels, given) for given in question.given]
     boxes = np.array(given).reshape(-1, 7)
-    chain = _sample(rng, model, question) if method == "dp" else None
+    names = sorted(by_category)
+    chains = _sample(rng, model, question, names) if method == "dp" else None
     placements, densities = [], {}
-    for category, items in sorted(by_category.items()):
-        weight = None if chain is None else _pose_weight(chain, question, category)
+    for slot, category in enumerate(names):
+        items = by_category[category]
+        weight = None if chains is None else _pose_weight(chains, slot)
         density, smooth = _density(model, method, category, weight)
         allowed = [
             model.fits[item.object_id] & is_unoccupied(model.candidates, item, boxes)
@@ -64,25 +66,27 @@ def answer(
             (item, None if p is None else _placement(rng, model, item, p, weight))
             for item, p in zip(items, chosen, strict=True)
         ]
-    return Answer(tuple(placements), densities, chain)
+    return Answer(tuple(placements), densities, chains)
 
 
-def _sample(rng: Generator, model: SceneModel, question: Question) -> dpmm.Chain | None:
+def _sample(
+    rng: Generator, model: SceneModel, question: Question, categories: list[str]
+) -> dpmm.Chains | None:
     """Return the poses sampled for a question, None where no pose is valid."""
     if len(model.poses.kind) == 0:
         return None
     rows = [model.given_row(question.labels, given) for given in question.given]
     rows += [dpmm.scale_row(model.use(item.category)[1]) for item in question.wanted]
-    return dpmm.sample(rng, np.stack(rows), model.poses.prior, model.settings.sampling)
+    slots = [-1] * len(question.given)
+    slots += [categories.index(item.category) for item in question.wanted]
+    config, prior = model.settings.sampling, model.poses.prior
+    return dpmm.sample(rng, np.stack(rows), prior, config, np.array(slots))
 
 
-def _pose_weight(chain: dpmm.Chain, question: Question, category: str) -> Array:
-    """Return how often the category's wanted objects picked each pose."""
-    n_given = len(question.given)
-    wanted = enumerate(question.wanted)
-    columns = [n_given + i for i, item in wanted if item.category == category]
-    picked = chain.pose[:, columns].ravel()
-    return np.bincount(picked) / len(picked)
+def _pose_weight(chains: dpmm.Chains, slot: int) -> Array:
+    """Return how likely the wanted objects of a slot are to pick each pose, (q,)."""
+    weight = chains.weight[:, slot, :-1].mean(0)
+    return weight / weight.sum()
 
 
 def _density(

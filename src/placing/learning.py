@@ -10,7 +10,7 @@ DIFFERS: eq. 4 as printed sums j to n and has no sum over samples.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import pandas as pd
@@ -63,11 +63,11 @@ def learn_theta(
     `examples` holds the labelled arrangements of each training scene; every round
     looks at one arrangement of each scene, in turn.
     """
-    chain_config = dpmm.DpmmConfig(
-        sampling.concentration,
-        sampling.n_auxiliary,
-        config.n_burn_in,
-        config.n_samples,
+    chain_config = replace(
+        sampling,
+        n_chains=1,
+        n_burn_in=config.n_burn_in,
+        n_samples=config.n_samples,
     )
     names = sorted({c for scene in examples for e in scene for c in e.categories})
     thetas, trace = dict.fromkeys(names, BROAD), []
@@ -105,7 +105,7 @@ def _sample_pairs(
     """Return sampled pairs of object and pose, and the mean log joint."""
     rows = dpmm.weight_rows(log_rows(example, thetas))
     chain = dpmm.sample(rng, rows, example.prior, config)
-    n_samples, n_objects = chain.pose.shape
+    _, n_samples, n_objects = chain.pose.shape
     i = np.tile(np.arange(n_objects), n_samples)
     objects, references = example.objects[i], example.references[chain.pose.ravel()]
     columns = ("log_distance", "bearing", "height", "orientation")

@@ -41,18 +41,17 @@ def partition_of(choice):
     return frozenset(frozenset(np.flatnonzero(choice == k)) for k in set(choice))
 
 
-@pytest.mark.parametrize("n_auxiliary", [1, 3])
+@pytest.mark.parametrize("m", [0, 1, 3])
 @pytest.mark.parametrize("concentration", [0.8, 3.0])
-def test_partitions_are_visited_as_often_as_enumeration_says(
-    n_auxiliary, concentration
-):
+def test_partitions_are_visited_as_often_as_enumeration_says(m, concentration):
     rng = np.random.default_rng(0)
     rows = dpmm.weight_rows(rng.normal(scale=1.5, size=(4, N_POSES)))
     prior = np.array([0.5, 0.3, 0.2])
-    config = dpmm.DpmmConfig(concentration, n_auxiliary, 100, 200_000)
+    sampler = "algorithm8" if m else "exact_birth"
+    config = dpmm.DpmmConfig(sampler, concentration, m, 1, 100, 200_000)
 
     chain = dpmm.sample(rng, rows, prior, config)
-    visits = Counter(map(tuple, chain.choice))
+    visits = Counter(map(tuple, chain.choice[0]))
     share = Counter()
     for choice, n in visits.items():
         share[partition_of(np.array(choice))] += n / config.n_samples
@@ -66,8 +65,10 @@ def test_a_single_object_picks_poses_in_proportion_to_prior_and_potential():
     rng = np.random.default_rng(1)
     rows = dpmm.weight_rows(rng.normal(size=(1, N_POSES)))
     prior = np.array([0.5, 0.3, 0.2])
-    chain = dpmm.sample(rng, rows, prior, dpmm.DpmmConfig(1.0, 4, 10, 50_000))
-    share = np.bincount(chain.pose[:, 0], minlength=N_POSES) / 50_000
+    chain = dpmm.sample(
+        rng, rows, prior, dpmm.DpmmConfig("algorithm8", 1.0, 4, 1, 10, 50_000)
+    )
+    share = np.bincount(chain.pose[0, :, 0], minlength=N_POSES) / 50_000
     exact = prior * rows[0] / (prior * rows[0]).sum()
     assert np.abs(share - exact).max() < 0.01
 
@@ -76,9 +77,11 @@ def test_log_joint_is_the_log_of_the_product_it_names():
     rng = np.random.default_rng(2)
     rows = dpmm.weight_rows(rng.normal(size=(5, N_POSES)))
     prior = np.array([0.5, 0.3, 0.2])
-    chain = dpmm.sample(rng, rows, prior, dpmm.DpmmConfig(0.7, 2, 0, 50))
+    chain = dpmm.sample(
+        rng, rows, prior, dpmm.DpmmConfig("algorithm8", 0.7, 2, 1, 0, 50)
+    )
     for choice, pose, log_joint in zip(
-        chain.choice, chain.pose, chain.log_joint, strict=True
+        chain.choice[0], chain.pose[0], chain.log_joint[0], strict=True
     ):
         value = np.prod([rows[i, h] for i, h in enumerate(pose)], dtype=float)
         for k in set(choice):

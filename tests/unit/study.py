@@ -15,7 +15,7 @@ from placing.scene_model import Settings
 
 SETTINGS = Settings(
     CandidatesConfig(0.05, 8, 0.7, 0.05),
-    DpmmConfig(1.0, 8, 20, 60),
+    DpmmConfig("exact_birth", 1.0, 8, 2, 20, 40),
     ArrangingConfig(4.0, 0.1),
     DecisionConfig(0.2, 0.25),
     BaselinesConfig(0.05, 0.05, 0.1, 0.2, 3.0, 1.0),

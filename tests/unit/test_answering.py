@@ -78,13 +78,13 @@ def test_the_same_stream_gives_the_same_answer(model):
     one, two = (ask(model, "empty", "dp")[1] for _ in range(2))
     for category, density in one.densities.items():
         np.testing.assert_array_equal(density, two.densities[category])
-    np.testing.assert_array_equal(one.chain.pose, two.chain.pose)
+    np.testing.assert_array_equal(one.chains.pose, two.chains.pose)
 
 
 def test_the_chain_samples_given_and_wanted_objects_together(model):
     question, given = ask(model, "filled", "dp")
     n_objects = len(question.given) + len(question.wanted)
-    assert given.chain.pose.shape == (SETTINGS.sampling.n_samples, n_objects)
+    assert given.chains.pose.shape == (2, SETTINGS.sampling.n_samples, n_objects)
 
 
 def test_a_category_never_seen_uses_the_broad_theta(model):
@@ -104,7 +104,7 @@ def test_without_valid_poses_human_context_falls_back_to_chance(model):
     scene, candidates = model.scene, model.candidates
     alone = SceneModel(scene, candidates, nobody, model.learned, SETTINGS)
     given = answer(generator(0, "x"), alone, questions(scene, "empty")[0], "dp")
-    assert given.chain is None
+    assert given.chains is None
     density = given.densities["laptop"]
     assert np.ptp(density[density > 0]) < 1e-12
 

@@ -11,7 +11,7 @@ from placing.learning import Example, LearningConfig, learn_theta
 
 CONFIG = LearningConfig(15, 10, 10)
 FITTING = FittingConfig(1.0, 50.0, 0.05, 0.02)
-SAMPLING = DpmmConfig(1.0, 8, 0, 1)
+SAMPLING = DpmmConfig("exact_birth", 1.0, 8, 1, 0, 1)
 
 
 def drawn_pairs(rng, n):

@@ -54,8 +54,8 @@ def main(
                 given = answer(rng, model, question, method)
                 row = (scene.scene, task, method, question)
                 placed += placement_rows(*row, given)
-                if given.chain is not None:
-                    sampled.append(pose_rows(*row, given.chain, valid))
+                if given.chains is not None:
+                    sampled.append(pose_rows(*row, given.chains, valid))
                 for category, density in given.densities.items():
                     key = density_key(method, question.name, category)
                     of_scene[key] = density

@@ -21,17 +21,21 @@ def voxel_means(
 
     Both are means over voxels, just so large that few enough are occupied.
     """
-    low, spacing = points.min(axis=0), FINEST_M
+    # A first guess that rarely has to be widened: points are on surfaces.
+    wider = np.clip(np.sqrt(len(points) / n_kept), 1, 2)
+    low, spacing = points.min(axis=0), FINEST_M * wider
     while True:
         cells = np.floor((points - low) / spacing).astype(np.int64)
-        keys = (cells[:, 0] << 42) + (cells[:, 1] << 21) + cells[:, 2]
-        _, voxel, counts = np.unique(keys, return_inverse=True, return_counts=True)
-        if len(counts) <= n_kept:
+        spans = cells.max(axis=0) + 1
+        flat = np.ravel_multi_index(cells.T, spans)
+        counts = np.bincount(flat)
+        occupied = np.flatnonzero(counts)
+        if len(occupied) <= n_kept:
             break
-        spacing *= 1.02 * np.sqrt(len(counts) / n_kept)  # points are on surfaces
+        spacing *= 1.02 * np.sqrt(len(occupied) / n_kept)
     columns = np.column_stack([points, values]).T
-    sums = [np.bincount(voxel, column) for column in columns]
-    means = np.column_stack(sums) / counts[:, None]
+    sums = [np.bincount(flat, column)[occupied] for column in columns]
+    means = np.column_stack(sums) / counts[occupied, None]
     return means[:, :3], means[:, 3:], spacing
 
 
