@@ -1,4 +1,4 @@
-"""Answer a question with a method: densities over places, then placements.
+"""Answer a question with every method: densities over places, then placements.
 
 Every method gives a density over the same places of the scene; the places that do not
 fit an object are taken out the same way for all, so that errors and negative log
@@ -7,115 +7,210 @@ densities compare.
 Shapes: p places, q valid poses, n objects.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from placing import dpmm, rigid
+from placing import rigid
 from placing.candidates import is_unoccupied
 from placing.decision import choose_places
+from placing.hallucinating import (
+    HUMAN_METHODS,
+    People,
+    categories_of,
+    hallucinate,
+    random_people,
+)
+from placing.learned import Choices, theta_name
 from placing.scene import Placement, SceneObject
 from placing.scene_model import SceneModel
 from placing.tasks import Question
 
 Array = NDArray[np.float64]
 
-METHODS = ("chance", "height", "room", "dp")
+METHODS = (
+    *("chance", "height", "room", "area", "random_human"),
+    *("object", "fmm", "dp", "dp_object"),
+)
+
+
+NO_PLACE = "no place fits"
+NO_POSE = "no valid human pose: chance"
+NO_EXAMPLE = "no training example: common prior"
+"""Reasons why an answer is not what it could be."""
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """What a method chose for one wanted object."""
+
+    item: SceneObject
+    place: int | None
+    """Index of the place; None where no place fits."""
+    heading: int
+    """Index into the headings that placements may have."""
+    heading_probability: float
+    placement: Placement | None
+    reason: str
+    """Why the answer is not what it could be; empty where nothing is amiss."""
 
 
 @dataclass(frozen=True)
 class Answer:
     """What a method says to a question."""
 
-    placements: tuple[tuple[SceneObject, Placement | None], ...]
-    """The placement of each wanted object; None where no place fits."""
+    chosen: tuple[Chosen, ...]
+    """One per wanted object."""
     densities: Mapping[str, Array]
     """(p,) per wanted category; 0 at places that fit no object of it."""
-    chains: dpmm.Chains | None
-    """The sampled poses of a method with humans; objects are given, then wanted."""
+    people: People | None
+    """Where the users are; None for a method without humans."""
 
 
-def answer(
-    rng: Generator, model: SceneModel, question: Question, method: str
-) -> Answer:
-    """Return densities and placements of the wanted objects."""
-    by_category: dict[str, list[SceneObject]] = {}
-    for item in question.wanted:
-        by_category.setdefault(item.category, []).append(item)
-    given = [model.given_box(question.labels, given) for given in question.given]
-    boxes = np.array(given).reshape(-1, 7)
-    names = sorted(by_category)
-    chains = _sample(rng, model, question, names) if method == "dp" else None
-    placements, densities = [], {}
-    for slot, category in enumerate(names):
-        items = by_category[category]
-        weight = None if chains is None else _pose_weight(chains, slot)
-        density, smooth = _density(model, method, category, weight)
-        allowed = [
-            model.fits[item.object_id] & is_unoccupied(model.candidates, item, boxes)
-            for item in items
-        ]
-        fitting = np.where(np.any(allowed, axis=0), density, 0.0)
-        densities[category] = fitting / max(fitting.sum(), 1e-300)  # guards no place
-        config = model.settings.decision
-        chosen = choose_places(rng, smooth, allowed, model.candidates, config)
-        placements += [
-            (item, None if p is None else _placement(rng, model, item, p, weight))
-            for item, p in zip(items, chosen, strict=True)
-        ]
-    return Answer(tuple(placements), densities, chains)
+class Asked:
+    """A question put to a scene: what the methods that answer it share."""
+
+    def __init__(
+        self,
+        stream: Callable[[str], Generator],
+        model: SceneModel,
+        question: Question,
+        choices: Choices,
+    ) -> None:
+        """Find where each wanted object fits; `stream` gives the stream of a method."""
+        self.model, self.question, self.choices = model, question, choices
+        self._stream = stream
+        self._people: dict[str, People] = {}
+        self._found: dict[tuple[str, str], tuple[Array, Array]] = {}
+        given = [model.given_box(question.labels, p) for p in question.given]
+        boxes = np.array(given).reshape(-1, 7)
+        self.allowed = {
+            item.object_id: model.fits[item.object_id]
+            & is_unoccupied(model.candidates, item, boxes)
+            for item in question.wanted
+        }
+
+    def answer(self, method: str) -> Answer:
+        """Return densities and placements of the wanted objects."""
+        rng = self._stream(method)
+        people = self.people(rng, method)
+        chosen, densities = [], {}
+        for category in categories_of(self.question):
+            items = [i for i in self.question.wanted if i.category == category]
+            allowed = [self.allowed[item.object_id] for item in items]
+            density, smooth = self.density(rng, method, category)
+            densities[category] = self.fitting(category, density)
+            config = self.model.settings.decision
+            args = smooth, allowed, self.model.candidates, config
+            places = choose_places(rng, *args)
+            chosen += [
+                self._chosen(rng, method, item, place, people)
+                for item, place in zip(items, places, strict=True)
+            ]
+        return Answer(tuple(chosen), densities, people)
+
+    def fitting(self, category: str, density: Array) -> Array:
+        """Return a density without places that fit no object of a category, (p,)."""
+        items = [i for i in self.question.wanted if i.category == category]
+        allowed = np.any([self.allowed[item.object_id] for item in items], axis=0)
+        left = np.where(allowed, density, 0.0)
+        return left / max(left.sum(), 1e-300)  # guards a scene without such a place
+
+    def people(self, rng: Generator, method: str) -> People | None:
+        """Return who uses the wanted objects; None without humans or a valid pose."""
+        if method not in HUMAN_METHODS or len(self.model.poses.kind) == 0:
+            return None
+        if method == "dp_object":
+            return self.people(self._stream("dp"), "dp")
+        if method not in self._people:
+            k = self.choices.n_components if method == "fmm" else 0
+            self._people[method] = (
+                random_people(self.model, self.question)
+                if method == "random_human"
+                else hallucinate(rng, self.model, self.question, k)
+            )
+        return self._people[method]
+
+    def density(
+        self, rng: Generator, method: str, category: str
+    ) -> tuple[Array, Array]:
+        """Return the density of a category over all places, and it smoothed, (p,).
+
+        A method with humans that has none, for want of a valid pose, is `chance`.
+        """
+        key = method, category
+        if key not in self._found:
+            self._found[key] = self._density(rng, method, category)
+        return self._found[key]
+
+    def found(self, method: str, category: str) -> tuple[Array, Array]:
+        """Return a density that was asked for before, and it smoothed, (p,) each."""
+        return self._found[method, category]
+
+    def _density(
+        self, rng: Generator, method: str, category: str
+    ) -> tuple[Array, Array]:
+        """Return what `density` keeps."""
+        model, question = self.model, self.question
+        if method == "object":
+            return model.object_density(question.labels, category, question.given)
+        if method == "dp_object":
+            w = self.choices.object_weight
+            parts = [self.density(self._stream(m), m, category) for m in _MIXED]
+            return tuple(w * h + (1 - w) * o for h, o in zip(*parts, strict=True))
+        people = self.people(rng, method)
+        if people is None:
+            name = "chance" if method in HUMAN_METHODS else method
+            return model.baseline(name, category)
+        if method == "random_human":
+            return model.random_density(category)
+        density = model.use(people.theta, category).density(people.weight[category])
+        return density, model.smooth(density)
+
+    def _chosen(
+        self,
+        rng: Generator,
+        method: str,
+        item: SceneObject,
+        place: int | None,
+        people: People | None,
+    ) -> Chosen:
+        """Return the placement of an object upright at a place, likeliest heading."""
+        yaws = self.model.yaws
+        share = np.full(len(yaws), 1 / len(yaws))
+        if place is None:
+            return Chosen(item, None, 0, share[0], None, NO_PLACE)
+        if people is None:
+            heading = int(rng.integers(len(yaws)))
+        else:
+            use = self.model.use(people.theta, item.category)
+            share = use.heading_probability(place, people.weight[item.category], yaws)
+            heading = int(np.argmax(share))
+        location = self.model.candidates.location[place] + [0, 0, item.size_m[2] / 2]
+        area = self.model.scene.areas[self.model.candidates.area[place]].area
+        turned = rigid.yaw_quaternion(float(yaws[heading]))
+        placement = Placement(item.object_id, area, location, turned)
+        reason = self.reason(method, item.category)
+        return Chosen(item, place, heading, float(share[heading]), placement, reason)
+
+    def reason(self, method: str, category: str) -> str:
+        """Return why a method had to fall back on something for a category."""
+        model = self.model
+        if method in HUMAN_METHODS and len(model.poses.kind) == 0:
+            return NO_POSE
+        learned = model.learned
+        if method in HUMAN_METHODS:
+            k = self.choices.n_components
+            is_known = category in learned.thetas[theta_name(method, k)]
+        elif method in learned.histograms:
+            is_known = category in learned.histograms[method]
+        else:
+            is_known = method != "object" or category in learned.relations.pairs
+        return "" if is_known else NO_EXAMPLE
 
 
-def _sample(
-    rng: Generator, model: SceneModel, question: Question, categories: list[str]
-) -> dpmm.Chains | None:
-    """Return the poses sampled for a question, None where no pose is valid."""
-    if len(model.poses.kind) == 0:
-        return None
-    rows = [model.given_row(question.labels, given) for given in question.given]
-    rows += [dpmm.scale_row(model.use(item.category)[1]) for item in question.wanted]
-    slots = [-1] * len(question.given)
-    slots += [categories.index(item.category) for item in question.wanted]
-    config, prior = model.settings.sampling, model.poses.prior
-    return dpmm.sample(rng, np.stack(rows), prior, config, np.array(slots))
-
-
-def _pose_weight(chains: dpmm.Chains, slot: int) -> Array:
-    """Return how likely the wanted objects of a slot are to pick each pose, (q,)."""
-    weight = chains.weight[:, slot, :-1].mean(0)
-    return weight / weight.sum()
-
-
-def _density(
-    model: SceneModel, method: str, category: str, weight: Array | None
-) -> tuple[Array, Array]:
-    """Return the density of a category over all places, and it smoothed, (p,) each.
-
-    A method with humans that has none, for want of a valid pose, is `chance`.
-    """
-    if weight is None:
-        return model.baseline("chance" if method == "dp" else method, category)
-    use, row = model.use(category)
-    density = use.density(weight, row)
-    return density, model.smooth(density)
-
-
-def _placement(
-    rng: Generator,
-    model: SceneModel,
-    item: SceneObject,
-    place: int,
-    weight: Array | None,
-) -> Placement:
-    """Return the placement of an object upright at a place."""
-    if weight is None:
-        yaw = float(rng.choice(model.yaws))
-    else:
-        use, row = model.use(item.category)
-        yaw = use.heading(place, weight, row, model.yaws)
-    location = model.candidates.location[place] + [0, 0, item.size_m[2] / 2]
-    area = model.scene.areas[model.candidates.area[place]].area
-    return Placement(item.object_id, area, location, rigid.yaw_quaternion(yaw))
+_MIXED = ("dp", "object")
+"""The parts of `dp_object`: human context and object context."""

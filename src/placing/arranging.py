@@ -1,4 +1,4 @@
-"""Where an object goes, given sampled human poses: the density of its placement.
+"""Where an object goes, given how likely its user is at each human pose.
 
 With the placements of wanted objects summed out, the row of a wanted object is
 Z(h) = sum over places of Psi_loc(place, h), and the density of its placement is read
@@ -6,32 +6,37 @@ off the sampled poses afterwards (Rao-Blackwell):
 
     p(place) = sum_h w(h) Psi_loc(place, h) / Z(h)
 
-with w(h) the share of samples in which the object picked pose h.
+with w(h) the probability that the object's user has pose h.
 
-Shapes: p places, q valid poses.
+Shapes: p places, q valid poses, r chains, b bins.
 """
 
-from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from placing.candidates import Candidates
-from placing.human import HumanPoses
+from placing.correlation import (
+    cumulative_table,
+    kernel_transform,
+    separate,
+    spread,
+    sum_blocks,
+)
+from placing.lattice import ArrangingConfig, Lattice
 from placing.potential import Theta, height_factor, log_psi_ori, planar_table
 
 Array = NDArray[np.float64]
 
-
-@dataclass(frozen=True)
-class ArrangingConfig:
-    """Settings of the density; the values live in `config/config.yaml`."""
-
-    radius_m: float
-    """An object further than this from a person is not used by that person."""
-    row_spacing_m: float
-    """Lattice on which Z(h) adds up places; places and poses lie on multiples of it."""
+TINY = 1e-300
+"""Guards divisions by the Z of a pose, or the sum of a density, that is zero."""
+ROUNDING = 1e-10
+"""A pose with so small a Z, relative to the largest, has no use of the object: below,
+cumulative sums are off by more than 1e-4 of Z."""
+ERROR = 1e-10
+"""What a sum of weight over Z times Psi_loc may be off; the sums over all poses add up
+to the number of places per place of the coarse lattice."""
 
 
 class UseOfObject:
@@ -40,139 +45,144 @@ class UseOfObject:
     def __init__(
         self,
         theta: Theta,
-        candidates: Candidates,
-        poses: HumanPoses,
-        spacing_m: float,
+        lattice: Lattice,
         half_height_m: float,
         config: ArrangingConfig,
     ) -> None:
-        """Keep places and poses as cells of the lattice that both lie on.
-
-        `half_height_m` lifts the centre of the object above its place.
-        """
-        self.theta, self.poses = theta, poses
-        self._spacing, self._config = spacing_m, config
-        self._cells = _cells(candidates.location, spacing_m)
-        self._pose_cells = _cells(poses.location, spacing_m)
-        self._n_headings = _n_headings(poses.yaw)
-        turn = poses.yaw / (2 * np.pi) * self._n_headings
-        self._heading = np.round(turn).astype(np.int64)
-        self._table = self._table_of(spacing_m)
-        levels, self._level = np.unique(candidates.location[:, 2], return_inverse=True)
-        z, self._reference = np.unique(poses.references()[:, 2], return_inverse=True)
-        self._height = height_factor(theta, levels + half_height_m, z)
+        """Compute the height factor; `half_height_m` lifts the object's centre."""
+        self.theta, self.lattice, self.half_height_m = theta, lattice, half_height_m
+        self._config = config
+        self._height = height_factor(
+            theta, lattice.levels + half_height_m, lattice.references
+        )  # (levels, references)
 
     def row(self) -> Array:
-        """Return Z of every pose up to a common factor, shape (q,).
+        """Return Z of every pose up to a common factor, shape (q,), 0 without places.
 
-        Places above each other share a cell, weighted by their heights.
+        It adds up the places of the coarse lattice.
         """
-        stride = round(self._config.row_spacing_m / self._spacing)
-        kept = (self._cells % stride == 0).all(1)
-        cells, level = self._cells[kept] // stride, self._level[kept]
-        if len(cells) == 0 or (self._pose_cells % stride).any():
-            raise ValueError("places and poses must lie on multiples of row_spacing_m")
-        low, spans = cells.min(0), np.ptp(cells, axis=0) + 1
-        flat = np.ravel_multi_index((cells - low).T, spans)
-        grids = np.stack(
-            [np.bincount(flat, w[level], spans.prod()) for w in self._height.T]
-        )
-        return _add_up(
-            self._table_of(self._config.row_spacing_m),
-            grids.reshape(-1, *spans).astype(np.float32),
-            self._pose_cells // stride - low,
-            self._heading,
-            self._reference,
-        )
+        return self._row
 
-    def density(self, weight: Array, row: Array) -> Array:
+    @cached_property
+    def _row(self) -> Array:
+        """Return what `row` keeps."""
+        lattice = self.lattice
+        blocks, n_levels = lattice.level_blocks, len(lattice.levels)
+        planar = sum_blocks(self._sums(), lattice.sites, blocks, n_levels)
+        row = _weigh(planar, self._height, lattice.site, lattice.reference)
+        # What is smaller is the rounding of the cumulative sums.
+        return np.where(row > ROUNDING * row.max(initial=0.0), row, 0.0)
+
+    def new_person(self) -> Array:
+        """Return where a user that no other object shares is, shape (q,), sum 1."""
+        share = self.lattice.poses.prior * self.row()
+        return share / max(share.sum(), TINY)
+
+    def density(self, weight: Array) -> Array:
         """Return the density of the object over the places, shape (p,), sum 1.
 
-        `weight` (q,) share of samples in which the object picked each pose; `row` (q,)
-        as returned by `row`.
+        `weight` (q,) probability that its user has each pose.
         """
-        used = np.flatnonzero(weight)
-        density = _spread(
-            self._table,
-            self._height,
-            self._cells,
-            self._level,
-            self._pose_cells[used],
-            self._heading[used],
-            self._reference[used],
-            weight[used] / np.maximum(row[used], 1e-300),  # guards a pose without use
+        lattice, config = self.lattice, self._config
+        key = lattice.spacing_m, lattice.stride, config.radius_m, lattice.n_headings
+        kernel = kernel_transform(self.theta, *key, lattice.size)
+        value = self.per_place(weight)
+        largest = float(self._table().max()) * self._height.max(initial=0.0)
+        loudest = value.max(initial=0.0) * largest
+        factors = separate(self._height, ERROR / max(loudest, ERROR))
+        density = spread(lattice, kernel, factors, value)
+        density = np.maximum(density, 0)  # a transform rounds to either side of zero
+        return density / max(density.sum(), TINY)
+
+    def histograms(self, weights: Array) -> Array:
+        """Return the placements per bin and level for each chain, (r, b), rows sum 1.
+
+        `weights` (r, q) as in `density`; places of the coarse lattice are counted.
+        """
+        lattice, first = self.lattice, self.lattice.first_bin
+        gain = np.zeros((len(lattice.sites), len(lattice.levels), len(weights)))
+        value = self.per_place(weights)
+        _add_gain(gain, value, self._height, lattice.site, lattice.reference)
+        used = np.flatnonzero(np.bincount(lattice.site, weights.any(0)))
+        sites = lattice.sites[used]
+        planar = sum_blocks(self._sums(), sites, lattice.bin_blocks, first[-1])
+        histogram = _count(planar, gain[used], first)
+        return histogram / np.maximum(histogram.sum(1, keepdims=True), TINY)
+
+    def heading_probability(self, place: int, weight: Array, yaws: Array) -> Array:
+        """Return the probability of each of `yaws` at a place, (len(yaws),), sum 1."""
+        lattice = self.lattice
+        share = self.shares(place, weight)
+        near = np.bincount(
+            lattice.sites[lattice.site, 0], share, minlength=lattice.n_headings
         )
-        return density / max(density.sum(), 1e-300)  # guards a scene without use
+        look = np.linspace(0, 2 * np.pi, lattice.n_headings, endpoint=False)
+        psi_ori = np.exp(log_psi_ori(self.theta, yaws[:, None], look))
+        found = (psi_ori * near).sum(1)
+        total = found.sum()
+        return found / total if total > 0 else np.full(len(yaws), 1 / len(yaws))
 
-    def heading(self, place: int, weight: Array, row: Array, yaws: Array) -> float:
-        """Return the likeliest of `yaws` for an object at one place [rad]."""
-        used = np.flatnonzero(weight)
-        offset = self._cells[place] - self._pose_cells[used] + self._table.shape[1] // 2
-        is_near = ((offset >= 0) & (offset < self._table.shape[1])).all(1)
-        used, offset = used[is_near], offset[is_near]
-        near = self._table[self._heading[used], offset[:, 0], offset[:, 1]]
-        near = near * self._height[self._level[place], self._reference[used]]
-        near *= weight[used] / np.maximum(row[used], 1e-300)
-        psi_ori = np.exp(log_psi_ori(self.theta, yaws[:, None], self.poses.yaw[used]))
-        return float(yaws[np.argmax(psi_ori @ near)])
+    def shares(self, place: int, weight: Array) -> Array:
+        """Return what each pose adds to the density at a place, unnormalised, (q,)."""
+        lattice, table = self.lattice, self._table()
+        width = table.shape[1]
+        heading, *cells = lattice.sites.T
+        x, y = lattice.fine[place][:, None] - np.stack(cells) * lattice.stride
+        x, y = x + width // 2, y + width // 2
+        is_near = (x >= 0) & (x < width) & (y >= 0) & (y < width)
+        planar = np.where(is_near, table[heading, x % width, y % width], 0.0)
+        height = self._height[lattice.level[place], lattice.reference]
+        return planar[lattice.site] * height * self.per_place(weight)
 
-    def _table_of(self, spacing_m: float) -> NDArray[np.float32]:
-        """Return the planar part of Psi_loc on a lattice."""
-        radius = self._config.radius_m
-        return planar_table(self.theta, spacing_m, radius, self._n_headings)
+    def per_place(self, weight: Array) -> Array:
+        """Return weight over Z, 0 for a pose that has no use, shape of `weight`."""
+        row = self.row()
+        return np.where(row > 0, weight / np.maximum(row, TINY), 0.0)
 
+    def _table(self) -> NDArray[np.float32]:
+        """Return the planar part of Psi_loc on the fine lattice."""
+        lattice = self.lattice
+        key = lattice.spacing_m, self._config.radius_m, lattice.n_headings
+        return planar_table(self.theta, *key)
 
-def _cells(location: Array, spacing_m: float) -> NDArray[np.int64]:
-    """Return the lattice numbers of points of the lattice, shape (n, 2)."""
-    return np.round(location[:, :2] / spacing_m).astype(np.int64)
-
-
-def _n_headings(yaw: Array) -> int:
-    """Return how many headings the poses take."""
-    used = np.unique(np.round(yaw, 9))
-    return round(2 * np.pi / np.diff(used).min()) if len(used) > 1 else 1
+    def _sums(self) -> Array:
+        """Return the cumulative planar part of Psi_loc on the coarse lattice."""
+        config, n_headings = self._config, self.lattice.n_headings
+        key = config.row_spacing_m, config.radius_m, n_headings
+        return cumulative_table(self.theta, *key)
 
 
 @njit(cache=True)
-def _add_up(table, grids, pose_cells, heading, reference):  # noqa: ANN001, ANN202
-    """Return the sum of Psi_loc over a grid of weighted places per pose, shape (q,).
-
-    Columns add up side by side, which vectorises and keeps the order of the sums.
-    """
-    n_x, n_y = grids.shape[1:]
-    width = table.shape[1]
-    half = width // 2
-    row = np.empty(len(pose_cells))
-    column = np.empty(n_y, np.float32)
-    for h in range(len(pose_cells)):
-        x, y = half - pose_cells[h, 0], half - pose_cells[h, 1]
-        first, last = max(0, -y), min(n_y, width - y)
-        column[:] = 0
-        part = column[first:last]
-        for i in range(max(0, -x), min(n_x, width - x)):
-            planar = table[heading[h], i + x, first + y : last + y]
-            weight = grids[reference[h], i, first:last]
-            for j in range(len(part)):
-                part[j] += weight[j] * planar[j]
-        total = 0.0
-        for j in range(n_y):
-            total += column[j]
-        row[h] = total
+def _weigh(planar, height, site, reference):  # noqa: ANN001, ANN202
+    """Return the sum over levels of planar (u, l) times height, shape (q,)."""
+    row = np.zeros(len(site))
+    for h in range(len(site)):
+        for level in range(len(height)):
+            row[h] += planar[site[h], level] * height[level, reference[h]]
     return row
 
 
 @njit(cache=True)
-def _spread(table, height, cells, level, pose_cells, heading, reference, weight):  # noqa: ANN001, ANN202
-    """Return the sum of weighted Psi_loc over the poses for every place, shape (p,)."""
-    width = table.shape[1]
-    half = width // 2
-    density = np.zeros(len(cells))
-    for h in range(len(pose_cells)):
-        x0, y0 = half - pose_cells[h, 0], half - pose_cells[h, 1]
-        planar = table[heading[h]]
-        for p in range(len(cells)):
-            i, j = cells[p, 0] + x0, cells[p, 1] + y0
-            if 0 <= i < width and 0 <= j < width:
-                psi = planar[i, j] * height[level[p], reference[h]]
-                density[p] += weight[h] * psi
-    return density
+def _add_gain(gain, value, height, site, reference):  # noqa: ANN001, ANN202
+    """Add to `gain` (u, l, r) what the poses of each site give to each level."""
+    for r in range(len(value)):
+        for h in range(len(site)):
+            if value[r, h] > 0:
+                for level in range(len(height)):
+                    factor = height[level, reference[h]]
+                    gain[site[h], level, r] += value[r, h] * factor
+
+
+@njit(cache=True)
+def _count(planar, gain, first_bin):  # noqa: ANN001, ANN202
+    """Return the sum over sites of planar (u, b) times gain (u, l, r), shape (r, b)."""
+    counts = np.zeros((gain.shape[2], planar.shape[1]))
+    for s in range(len(planar)):
+        for level in range(len(first_bin) - 1):
+            of_level = slice(first_bin[level], first_bin[level + 1])
+            source = planar[s, of_level]
+            for r in range(len(counts)):
+                target, factor = counts[r, of_level], gain[s, level, r]
+                for b in range(len(source)):
+                    target[b] += factor * source[b]
+    return counts

@@ -1,27 +1,19 @@
 """Placement candidates: where an object could be put down in a scene.
 
-Places on a lattice over every placing area, each with the features that the later
-stages use; headings come from a fixed set. Which places fit an object is decided per
-object from its size and from the objects that already stand there.
+Places on a lattice over every placing area (see `places`), each with the features that
+the later stages use; headings come from a fixed set. Which places fit an object is
+decided per object from its size and from the objects that already stand there.
 
 Shapes: p places, n objects.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy import ndimage
-from shapely import distance, points
 
-from placing.areas.columns import free_heights, sort_columns
-from placing.areas.finder import PIN_RADIUS_M
-from placing.areas.outlines import heal
-from placing.clouds.ply import Cloud
-from placing.human import lattice
-from placing.scene import PlacingArea, SceneObject
+from placing.scene import SceneObject
 
 Array = NDArray[np.float64]
 
@@ -59,28 +51,6 @@ class Candidates:
         return self.features[:, FEATURES.index(name)]
 
 
-def find_candidates(
-    cloud: Cloud, areas: tuple[PlacingArea, ...], config: CandidatesConfig
-) -> Candidates:
-    """Return the places on all placing areas of a scene."""
-    wall_distance = _wall_distance(cloud.points, config.wall_cell_m)
-    blocks: list[Array] = [np.empty((0, 4))]
-    edges: list[Array] = [np.empty(0)]
-    for number, area in enumerate(areas):
-        xy = lattice(area.polygon_m, config.spacing_m)  # (p, 2)
-        rest = np.tile([area.height_m, number], (len(xy), 1))
-        blocks.append(np.column_stack([xy, rest]))
-        edge = distance(heal(area.polygon_m).boundary, points(xy))
-        edges.append(np.asarray(edge))
-    table = np.concatenate(blocks)  # (p, 4)
-    xy, height = table[:, :2], table[:, 2]
-    columns = sort_columns(cloud, 2 * PIN_RADIUS_M)
-    clearance = np.minimum(free_heights(columns, xy, height, PIN_RADIUS_M), OPEN_M)
-    features = [height, clearance, np.concatenate(edges), wall_distance(xy)]
-    area = table[:, 3].astype(np.int32)
-    return Candidates(table[:, :3], area, np.column_stack(features))
-
-
 def fits(
     candidates: Candidates, item: SceneObject, min_overlap: float
 ) -> NDArray[np.bool_]:
@@ -116,23 +86,3 @@ def _is_clear(places, boxes, reach, height):  # noqa: ANN001, ANN202
             overlaps &= abs(cos * dy - sin * dx) < box[4] / 2 + reach
             free[p] &= not (overlaps and z < top and z + height > bottom)
     return free
-
-
-def _wall_distance(
-    cloud_points: NDArray[np.floating], cell_m: float
-) -> Callable[[Array], Array]:
-    """Return a function from places (p, 2) to their distance to the walls (p,).
-
-    What the cloud covers, seen from above and with its holes filled, is the inside.
-    """
-    origin = cloud_points[:, :2].min(0) - cell_m
-    cells = ((cloud_points[:, :2] - origin) / cell_m).astype(np.int64)
-    covered = np.zeros(cells.max(0) + 3, np.bool_)
-    covered[tuple(cells.T)] = True
-    inside = ndimage.binary_fill_holes(ndimage.binary_closing(covered, iterations=2))
-    to_wall = ndimage.distance_transform_edt(inside) * cell_m
-
-    def distance_of(xy: Array) -> Array:
-        return to_wall[tuple(((xy - origin) / cell_m).astype(np.int64).T)]
-
-    return distance_of

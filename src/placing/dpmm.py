@@ -18,7 +18,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numba import njit
 from numpy.random import Generator
 from numpy.typing import NDArray
 
@@ -94,34 +93,16 @@ def sample(
     slot = np.full(len(rows), -1) if slot is None else slot
     n_auxiliary = config.n_auxiliary if config.sampler == "algorithm8" else 0
     mixture = gibbs.Mixture(config.concentration, n_auxiliary, n_components)
-    tiles = gibbs.tile_rows(rows, prior)
+    tiles = gibbs.tile_rows(np.ascontiguousarray(rows), prior)
     size = (config.n_chains, config.n_samples)
     choice = np.empty((*size, len(rows)), np.int32)
     pose = np.empty_like(choice)
-    trace = np.empty((3, *size))
+    trace = np.empty((config.n_chains, 3, config.n_samples))
     weight = np.zeros((config.n_chains, slot.max(initial=-1) + 1, len(prior) + 1))
     for r in range(config.n_chains):
         together = n_components > 0 or r % 2 == 0
-        out = choice[r], pose[r], trace[:, r], weight[r]
-        _run(rng, tiles, mixture, together, config.n_burn_in, slot, *out)
+        out = choice[r], pose[r], trace[r], weight[r]
+        gibbs.run(rng, tiles, mixture, together, config.n_burn_in, slot, *out)
     weight /= np.maximum(weight.sum(2, keepdims=True), 1e-300)  # guards an empty slot
-    n_poses = trace[1].astype(np.int32)
-    return Chains(choice, pose, trace[0], n_poses, trace[2], weight)
-
-
-@njit(cache=True)
-def _run(rng, tiles, mixture, together, n_burn_in, slot, choice, pose, trace, weight):  # noqa: ANN001, ANN202
-    """Fill `choice`, `pose` (s, n), `trace` (3, s) and `weight` sweep by sweep."""
-    state = gibbs.init(rng, tiles, together)
-    nowhere = np.full(len(slot), -1)
-    for sweep in range(n_burn_in + len(choice)):
-        is_kept = sweep >= n_burn_in
-        to = slot if is_kept else nowhere
-        p_new = gibbs.step(rng, state, tiles, mixture, to, weight)
-        if is_kept:
-            s = sweep - n_burn_in
-            choice[s] = state.choice
-            pose[s] = state.pose_of[state.choice]
-            trace[0, s] = gibbs.log_joint(state, tiles, mixture)
-            trace[1, s] = (state.n_members > 0).sum()
-            trace[2, s] = p_new
+    log_joint, n_poses, p_new = np.moveaxis(trace, 1, 0)
+    return Chains(choice, pose, log_joint, n_poses.astype(np.int32), p_new, weight)

@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from placing import rigid
-from placing.baselines import FEATURES_OF
+from placing.baselines import place_features
 from placing.candidates import Candidates
 from placing.human import HumanPoses
 from placing.learning import Example
+from placing.offsets import find_spots
 from placing.scene import Scene, resting_point
 
 Array = NDArray[np.float64]
@@ -18,7 +19,7 @@ Array = NDArray[np.float64]
 def examples_of(scene: Scene, poses: HumanPoses) -> list[Example]:
     """Return one example per labelled arrangement of a scene."""
     items = {item.object_id: item for item in scene.objects}
-    references = poses.references()
+    spots = find_spots(poses.references())
     examples = []
     for arrangement in scene.arrangements:
         placed = [items[p.object_id] for p in arrangement.placements]
@@ -30,7 +31,7 @@ def examples_of(scene: Scene, poses: HumanPoses) -> list[Example]:
                 categories=tuple(item.category for item in placed),
                 objects=np.column_stack([locations, yaw]),
                 has_front=np.array([item.has_front for item in placed]),
-                references=references,
+                spots=spots,
                 prior=poses.prior,
             )
         )
@@ -47,8 +48,7 @@ def baseline_values(
     values: dict[str, list[Array]] = {}
     for scene, candidates in training:
         items = {item.object_id: item for item in scene.objects}
-        columns = [candidates.feature(name) for name in FEATURES_OF[method]]
-        table = np.column_stack(columns)
+        table = place_features(candidates, method)
         for arrangement in scene.arrangements:
             for placement in arrangement.placements:
                 item = items[placement.object_id]

@@ -1,23 +1,26 @@
 """Theta in closed form from pairs of an object and the pose that uses it (eq. 4).
 
 Each factor of the potential is an exponential family, so its maximum likelihood is a
-matter of means. A few draws of one broad Theta stand in for the objects that a small
+matter of sums. A few draws of one broad Theta stand in for the objects that a small
 data set lacks, and bounds keep a handful of objects from making a factor infinitely
 sharp.
-
-Shapes: n pairs.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 from scipy.special import i0e, i1e
 
-from placing.potential import MIN_DISTANCE_M, Theta
+from placing.potential import Theta
 
 Array = NDArray[np.float64]
+
+STATISTICS = (
+    *("count", "log_distance", "log_distance_squared", "bearing_cos", "bearing_sin"),
+    *("height", "height_squared", "front_count", "orientation_cos", "orientation_sin"),
+)
+"""Sums over pairs; the orientation counts for objects with a front alone."""
 
 
 @dataclass(frozen=True)
@@ -36,20 +39,16 @@ class FittingConfig:
 BROAD = Theta(np.log(0.7), 0.7, 0.0, 1.0, -0.3, 0.5, np.pi, 0.3)
 
 
-def fit(pairs: pd.DataFrame, config: FittingConfig) -> Theta:
-    """Return the Theta of one category from pairs of object and pose.
+def fit(sums: Array, config: FittingConfig) -> Theta:
+    """Return the likeliest Theta of one category from the sums of `STATISTICS`, (10,).
 
-    Columns: `log_distance`, `bearing`, `height`, `orientation`, `has_front`, `weight`.
+    Where a bound holds, it is the likeliest Theta within the bounds.
     """
-    w = pairs["weight"].to_numpy()
-    w_front = w * pairs["has_front"].to_numpy()
-    n0 = config.prior_strength
-    mean_d, sigma_d = _fit_normal(pairs["log_distance"], w, BROAD.vector()[:2], n0)
-    mean_h, sigma_h = _fit_normal(pairs["height"], w, BROAD.vector()[4:6], n0)
-    mean_r, kappa_r = _fit_von_mises(pairs["bearing"], w, BROAD.vector()[2:4], n0)
-    mean_o, kappa_o = _fit_von_mises(
-        pairs["orientation"], w_front, BROAD.vector()[6:8], n0
-    )
+    s = sums + config.prior_strength * expected_statistics(BROAD)
+    mean_d, sigma_d = _fit_normal(s[0], s[1], s[2])
+    mean_h, sigma_h = _fit_normal(s[0], s[5], s[6])
+    mean_r, kappa_r = _fit_von_mises(s[0], s[3], s[4])
+    mean_o, kappa_o = _fit_von_mises(s[7], s[8], s[9])
     return Theta(
         mean_d,
         max(sigma_d, config.min_log_distance_sigma),
@@ -62,47 +61,42 @@ def fit(pairs: pd.DataFrame, config: FittingConfig) -> Theta:
     )
 
 
-def relative(objects: Array, references: Array) -> tuple[Array, Array, Array, Array]:
-    """Return log distance, bearing, height and orientation of pairs, (n,) each.
+def expected_statistics(theta: Theta) -> Array:
+    """Return the expected statistics of one pair drawn from Theta, shape (10,)."""
+    m_d, s_d, m_r, k_r, m_h, s_h, m_o, k_o = theta.vector()
+    r, o = i1e(k_r) / i0e(k_r), i1e(k_o) / i0e(k_o)
+    distance = [1, m_d, m_d**2 + s_d**2, r * np.cos(m_r), r * np.sin(m_r)]
+    height = [m_h, m_h**2 + s_h**2, 1, o * np.cos(m_o), o * np.sin(m_o)]
+    return np.array([*distance, *height])
 
-    `objects` (n, 4) x, y, z, yaw; `references` (n, 5) as of `HumanPoses.references`.
+
+def _fit_normal(count: float, total: float, squares: float) -> tuple[float, float]:
+    """Return mean and sigma from the sums of values and of their squares."""
+    mean = total / count
+    return float(mean), float(np.sqrt(max(squares / count - mean**2, 0.0)))
+
+
+def _fit_von_mises(count: float, cos: float, sin: float) -> tuple[float, float]:
+    """Return mean and kappa from the sums of the cosines and sines of angles."""
+    length = min(np.hypot(cos, sin) / count, 0.999)
+    return float(np.arctan2(sin, cos)), _kappa_of(length)
+
+
+def _kappa_of(length: float) -> float:
+    """Return kappa from the mean resultant length of angles.
+
+    SOURCE: the start is that of Best and Fisher (1981), "The bias of the maximum
+    likelihood estimators of the von Mises-Fisher concentration parameters"; three steps
+    of Newton on I1(kappa) / I0(kappa) = length make it exact.
     """
-    dx, dy = (objects[:, :2] - references[:, :2]).T
-    log_distance = np.log(np.maximum(np.hypot(dx, dy), MIN_DISTANCE_M))
-    yaw = np.arctan2(references[:, 4], references[:, 3])
-    bearing = np.arctan2(dy, dx) - yaw
-    height = objects[:, 2] - references[:, 2]
-    return log_distance, bearing, height, objects[:, 3] - yaw
-
-
-def _fit_normal(
-    values: pd.Series, w: Array, broad: Array, n0: float
-) -> tuple[float, float]:
-    """Return mean and sigma of weighted values and `n0` draws of the broad normal."""
-    x, total = values.to_numpy(), w.sum() + n0
-    mean = (w @ x + n0 * broad[0]) / total
-    variance = w @ (x - mean) ** 2 + n0 * (broad[1] ** 2 + (broad[0] - mean) ** 2)
-    return float(mean), float(np.sqrt(variance / total))
-
-
-def _fit_von_mises(
-    angles: pd.Series, w: Array, broad: Array, n0: float
-) -> tuple[float, float]:
-    """Return mean and kappa of weighted angles and `n0` draws of the broad law.
-
-    SOURCE: kappa from the mean resultant length as in Best and Fisher (1981),
-    "The bias of the maximum likelihood estimators of the von Mises-Fisher
-    concentration parameters".
-    """
-    broad_length = i1e(broad[1]) / i0e(broad[1])
-    resultant = w @ np.exp(1j * angles.to_numpy())
-    resultant += n0 * broad_length * np.exp(1j * broad[0])
-    resultant /= w.sum() + n0
-    r = min(abs(resultant), 0.999)
+    r = length
     if r < 0.53:
         kappa = 2 * r + r**3 + 5 * r**5 / 6
     elif r < 0.85:
         kappa = -0.4 + 1.39 * r + 0.43 / (1 - r)
     else:
         kappa = 1 / (r**3 - 4 * r**2 + 3 * r)
-    return float(np.angle(resultant)), float(kappa)
+    for _ in range(3 if kappa > 0 else 0):
+        ratio = i1e(kappa) / i0e(kappa)
+        kappa -= (ratio - r) / (1 - ratio**2 - ratio / kappa)
+    return float(kappa)

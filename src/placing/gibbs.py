@@ -1,11 +1,11 @@
 """The compiled sweep of the pose sampler, and exact draws that read little of a row.
 
 The valid poses are cut into tiles of neighbouring poses. A tile knows the largest
-entry of each object's row and the sum of P0 times the row. A pose for several objects
-is drawn by rejection over tiles: a tile is drawn in proportion to P0 times the product
-of the largest entries, and accepted with the probability exact sum / bound; a refused
-tile takes its exact sum as its bound. Whatever the bounds are, an accepted tile t has
-probability proportional to its exact sum, so that the draw is exact, and only the
+entry of each object's row and the mean of the row under P0. A pose for several objects
+is drawn by rejection over tiles: a tile is drawn in proportion to an upper bound of
+its weight, and accepted with the probability exact weight / bound; a refused tile
+takes its exact weight as its bound. Whatever the bounds are, an accepted tile t has
+probability proportional to its exact weight, so that the draw is exact, and only the
 tiles that were drawn are read.
 
 Shapes: n objects, q valid poses, t tiles, c slots of wanted objects.
@@ -21,6 +21,13 @@ Array = NDArray[np.float64]
 
 TILE = 32
 """Poses in a tile."""
+BLOCK = 16
+"""Tiles whose bounds are also kept as a sum, so that few are added up in a draw."""
+MIN_BOUND = 1e-100
+"""A cluster whose bounds fall below is scaled up, so that no product underflows."""
+MIN_TOTAL = 1e-250
+"""A cluster whose exact weights fall below that is drawn for in logs: its objects
+disagree everywhere."""
 
 
 class Tiles(NamedTuple):
@@ -32,10 +39,10 @@ class Tiles(NamedTuple):
     """(q,) P0."""
     prior_below: Array
     """(q,) cumulative P0."""
-    tile_prior: Array
-    """(t,) P0 of each tile."""
-    highest: NDArray[np.float32]
+    highest: Array
     """(n, t) largest entry of each row in each tile."""
+    relative: Array
+    """(n, t) sum of P0 times the row over the tile, relative to `highest`."""
     birth_below: Array
     """(n, t) cumulative sum of P0 times the row; its end is the weight of a birth."""
 
@@ -61,25 +68,68 @@ class State(NamedTuple):
     """(n,) objects of each cluster; 0 marks an unused one."""
 
 
+class Buffers(NamedTuple):
+    """Memory that a draw writes to, so that a sweep allocates little."""
+
+    bound: Array
+    """(t,) upper bound of the weight of each tile, or the weight itself."""
+    is_exact: NDArray[np.bool_]
+    """(t,) whether it is the weight itself."""
+    block: Array
+    """Sum of every `BLOCK` of them."""
+    below: Array
+    """(TILE,) cumulative weights of the poses of a tile."""
+
+
 @njit(cache=True)
 def tile_rows(rows, prior):  # noqa: ANN001, ANN201
     """Return the tiles of `rows` (n, q) under P0 `prior` (q,)."""
     n, q = rows.shape
     n_tiles = (q + TILE - 1) // TILE
-    tile_prior = np.zeros(n_tiles)
-    highest = np.zeros((n, n_tiles), np.float32)
+    highest, relative = np.zeros((n, n_tiles)), np.zeros((n, n_tiles))
     birth_below = np.zeros((n, n_tiles))
-    for t in range(n_tiles):
-        tile_prior[t] = prior[t * TILE : (t + 1) * TILE].sum()
     for i in range(n):
         below = 0.0
         for t in range(n_tiles):
-            top = np.float32(0.0)
+            top, total = np.float32(0.0), 0.0
             for h in range(t * TILE, min(q, (t + 1) * TILE)):
                 top = max(top, rows[i, h])
-                below += prior[h] * rows[i, h]
+                total += prior[h] * rows[i, h]
+            below += total
             highest[i, t], birth_below[i, t] = top, below
-    return Tiles(rows, prior, np.cumsum(prior), tile_prior, highest, birth_below)
+            relative[i, t] = total / top if top > 0 else 0.0
+    return Tiles(rows, prior, np.cumsum(prior), highest, relative, birth_below)
+
+
+@njit(cache=True)
+def buffers_of(tiles):  # noqa: ANN001, ANN201
+    """Return the memory for draws from these tiles."""
+    n_tiles = tiles.highest.shape[1]
+    n_blocks = (n_tiles + BLOCK - 1) // BLOCK
+    is_exact = np.zeros(n_tiles, np.bool_)
+    return Buffers(np.zeros(n_tiles), is_exact, np.zeros(n_blocks), np.zeros(TILE))
+
+
+@njit(cache=True)
+def run(rng, tiles, mixture, together, n_burn_in, slot, choice, pose, trace, weight):  # noqa: ANN001, ANN201
+    """Fill `choice`, `pose` (s, n), `trace` (3, s) and `weight` sweep by sweep.
+
+    The rows of `trace` are the log joint, the poses in use and the probability of a
+    new one. It stands here since a cached kernel does not see the edits of another
+    file.
+    """
+    state = init(rng, tiles, together)
+    buffers, nowhere = buffers_of(tiles), np.full(len(slot), -1)
+    for sweep in range(n_burn_in + len(choice)):
+        s = sweep - n_burn_in
+        to = slot if s >= 0 else nowhere
+        p_new = step(rng, state, tiles, mixture, to, weight, buffers)
+        if s >= 0:
+            choice[s] = state.choice
+            pose[s] = state.pose_of[state.choice]
+            trace[0, s] = log_joint(state, tiles, mixture)
+            trace[1, s] = (state.n_members > 0).sum()
+            trace[2, s] = p_new
 
 
 @njit(cache=True)
@@ -96,7 +146,7 @@ def init(rng, tiles, starts_together):  # noqa: ANN001, ANN201
 
 
 @njit(cache=True)
-def step(rng, state, tiles, mixture, slot, weight):  # noqa: ANN001, ANN201
+def step(rng, state, tiles, mixture, slot, weight, buffers):  # noqa: ANN001, ANN201
     """Sweep once over the objects, then over the poses in use.
 
     `slot` (n,) row of `weight` (c, q + 1) that adds up the probability of each pose for
@@ -110,7 +160,7 @@ def step(rng, state, tiles, mixture, slot, weight):  # noqa: ANN001, ANN201
     for k in range(n):
         if state.n_members[k] > 0:
             members = np.flatnonzero(state.choice == k)
-            state.pose_of[k] = draw_pose(rng, tiles, members)
+            state.pose_of[k] = draw_pose(rng, tiles, members, buffers)
     return p_new
 
 
@@ -216,42 +266,89 @@ def draw_birth(rng, tiles, i):  # noqa: ANN001, ANN201
 
 
 @njit(cache=True)
-def draw_pose(rng, tiles, members):  # noqa: ANN001, ANN201
+def draw_pose(rng, tiles, members, buffers):  # noqa: ANN001, ANN201
     """Return a pose drawn in proportion to P0 times the rows of `members`."""
-    bound, scale = bound_tiles(tiles, members)
-    is_exact = np.zeros(len(bound), np.bool_)
-    while True:
-        t = search(np.cumsum(bound), rng.random())
-        below = sum_tile(tiles, members, scale, t)
-        u = rng.random() * bound[t]
-        if is_exact[t] or u < below[-1]:
-            return t * TILE + search(below, min(u / below[-1], 1.0))
-        bound[t], is_exact[t] = below[-1], True
+    if len(members) == 1:
+        return draw_birth(rng, tiles, members[0])
+    bound, is_exact, block, below = buffers
+    scale = bound_tiles(tiles, members, bound)
+    is_exact[:] = False
+    for b in range(len(block)):
+        block[b] = bound[b * BLOCK : (b + 1) * BLOCK].sum()
+    while block.sum() > MIN_TOTAL:
+        t = search_blocks(block, bound, rng.random())
+        size = sum_tile(tiles, members, scale, t, below)
+        total = below[size - 1]
+        u = rng.random()
+        if is_exact[t] or u * bound[t] < total:
+            u = u if is_exact[t] else u * bound[t] / total
+            return t * TILE + search(below[:size], u)
+        bound[t], is_exact[t] = total, True
+        first = t - t % BLOCK
+        block[t // BLOCK] = bound[first : first + BLOCK].sum()
+    return draw_in_logs(rng, tiles, members)
 
 
 @njit(cache=True)
-def bound_tiles(tiles, members):  # noqa: ANN001, ANN201
-    """Return P0 times the product of the largest entries per tile, (t,), largest 1.
+def draw_in_logs(rng, tiles, members):  # noqa: ANN001, ANN201
+    """Return what `draw_pose` draws, from logs of all weights."""
+    logs = np.log(np.maximum(tiles.prior, 1e-300))  # guards log 0
+    for j in range(len(members)):
+        logs += np.log(tiles.rows[members[j]])
+    return search(np.cumsum(np.exp(logs - logs.max())), rng.random())
 
-    The second array (members,) is the factor after each member that keeps it there.
+
+@njit(cache=True)
+def bound_tiles(tiles, members, bound):  # noqa: ANN001, ANN201
+    """Fill `bound` (t,) with an upper bound of the weight of each tile.
+
+    The sum of P0 times several rows is at most the product of their largest entries
+    times the smallest sum of P0 times one of them, relative to its largest entry.
+    Return the factors (members,) that multiply the product after each of them.
     """
-    bound, scale = tiles.tile_prior.copy(), np.empty(len(members))
+    scale = np.ones(len(members))
+    bound[:] = tiles.relative[members[0]]
+    for j in range(1, len(members)):
+        np.minimum(bound, tiles.relative[members[j]], bound)
     for j in range(len(members)):
         bound *= tiles.highest[members[j]]
-        scale[j] = 1 / bound.max()
-        bound *= scale[j]
-    return bound, scale
+        if j % 8 == 7 and bound.max() < MIN_BOUND:
+            scale[j] = 1 / bound.max()
+            bound *= scale[j]
+    return scale
 
 
 @njit(cache=True)
-def sum_tile(tiles, members, scale, t):  # noqa: ANN001, ANN201
-    """Return cumulative sums of P0 times the rows of `members` in a tile, scaled."""
-    first, last = t * TILE, min(len(tiles.prior), (t + 1) * TILE)
-    product = tiles.prior[first:last].copy()
+def search_blocks(block, bound, u):  # noqa: ANN001, ANN201
+    """Return the tile that a uniform `u` draws in proportion to `bound`."""
+    total = 0.0
+    for b in range(len(block)):
+        total += block[b]
+    left, b = u * total, 0
+    while b < len(block) - 1 and left >= block[b]:
+        left -= block[b]
+        b += 1
+    t, last = b * BLOCK, min(len(bound), (b + 1) * BLOCK) - 1
+    while t < last and left >= bound[t]:
+        left -= bound[t]
+        t += 1
+    return t
+
+
+@njit(cache=True)
+def sum_tile(tiles, members, scale, t, below):  # noqa: ANN001, ANN201
+    """Fill `below` with cumulative weights of the poses of a tile; return how many."""
+    first, size = t * TILE, min(TILE, len(tiles.prior) - t * TILE)
+    for h in range(size):
+        below[h] = tiles.prior[first + h]
     for j in range(len(members)):
-        product *= tiles.rows[members[j], first:last]
-        product *= scale[j]
-    return np.cumsum(product)
+        row = tiles.rows[members[j]]
+        factor = scale[j]
+        for h in range(size):
+            below[h] *= row[first + h] * factor
+    for h in range(1, size):
+        below[h] += below[h - 1]
+    return size
 
 
 @njit(cache=True)

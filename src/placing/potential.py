@@ -54,7 +54,7 @@ def log_psi_human(
     Psi_ori.
     """
     logs = np.empty((len(objects), len(poses)), np.float32)
-    constants = _log_constants(theta)
+    constants = log_constants(theta)
     _fill(logs, objects, has_front, poses, theta.vector(), *constants)
     return logs
 
@@ -64,13 +64,33 @@ def log_psi_loc(theta: Theta, objects: Array, poses: Array) -> NDArray[np.float3
     return log_psi_human(theta, objects, np.zeros(len(objects), np.bool_), poses)
 
 
+def log_factors(theta: Theta, location: Array, reference: Array) -> Array:
+    """Return the logs of Psi_dist, Psi_rel and Psi_height, shape (3,).
+
+    `location` (3,) of an object; `reference` (5,) of a pose, as in `log_psi_human`. The
+    sum is log Psi_loc: Psi_dist is the density of the distance over the distance.
+    """
+    dx, dy, height = location - reference[:3]
+    d = max(np.hypot(dx, dy), MIN_DISTANCE_M)
+    u = (np.log(d) - theta.log_distance_mean) / theta.log_distance_sigma
+    scale = theta.log_distance_sigma * np.sqrt(2 * np.pi)
+    distance = -0.5 * u * u - np.log(scale) - 2 * np.log(d)
+    cos, sin = np.cos(theta.bearing_mean_rad), np.sin(theta.bearing_mean_rad)
+    ahead = (dx * cos + dy * sin) * reference[3] + (dy * cos - dx * sin) * reference[4]
+    bearing = theta.bearing_kappa * ahead / d
+    bearing += _log_von_mises_constant(theta.bearing_kappa)
+    v = (height - theta.height_mean_m) / theta.height_sigma_m
+    scale = theta.height_sigma_m * np.sqrt(2 * np.pi)
+    return np.array([distance, bearing, -0.5 * v * v - np.log(scale)])
+
+
 def log_psi_ori(theta: Theta, yaw: Array, pose_yaw: Array) -> Array:
     """Return log Psi_ori, the density of the heading relative to the person [1/rad]."""
     relative = yaw - pose_yaw - theta.orientation_mean_rad
-    return theta.orientation_kappa * np.cos(relative) + _log_constants(theta)[1]
+    return theta.orientation_kappa * np.cos(relative) + log_constants(theta)[1]
 
 
-def _log_constants(theta: Theta) -> tuple[float, float]:
+def log_constants(theta: Theta) -> tuple[float, float]:
     """Return the log normalisers of Psi_loc and Psi_ori."""
     location = -np.log(theta.log_distance_sigma * theta.height_sigma_m * 2 * np.pi)
     location += _log_von_mises_constant(theta.bearing_kappa)
@@ -110,7 +130,7 @@ def _fill(logs, objects, has_front, poses, theta, log_loc, log_ori):  # noqa: AN
             logs[i, k] = log_psi
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=128)
 def planar_table(
     theta: Theta, spacing_m: float, radius_m: float, n_headings: int
 ) -> NDArray[np.float32]:
@@ -132,7 +152,8 @@ def planar_table(
     table = radial * np.exp(theta.bearing_kappa * (cosine - 1))
     table *= i0e(theta.bearing_kappa) ** -1 / (2 * np.pi)
     table *= 1 / (np.sqrt(2 * np.pi) * theta.log_distance_sigma)
-    return np.where(np.hypot(dx, dy) <= radius_m, table, 0).astype(np.float32)
+    is_within = np.hypot(dx, dy) <= radius_m + 1e-9  # the lattice meets the radius
+    return np.where(is_within, table, 0).astype(np.float32)
 
 
 def height_factor(theta: Theta, z: Array, reference_z: Array) -> Array:

@@ -3,32 +3,27 @@
 Shapes: p places, q valid poses.
 """
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from placing import dpmm, rigid
-from placing.arranging import ArrangingConfig, UseOfObject
+from placing.arranging import UseOfObject
 from placing.baselines import BaselinesConfig, chance_density, histogram_density
 from placing.candidates import Candidates, CandidatesConfig, fits
 from placing.decision import DecisionConfig, Smoother
 from placing.fitting import BROAD
 from placing.human import HumanPoses, headings
+from placing.lattice import ArrangingConfig, Lattice
+from placing.learned import Learned
+from placing.likelihoods import nearest_places
+from placing.object_context import given_object, mix, pair_density
 from placing.potential import Theta, log_psi_human
 from placing.scene import Placement, Scene, extents
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Learned:
-    """What a fold has learned from its training scenes."""
-
-    thetas: Mapping[str, Theta]
-    histograms: Mapping[str, Mapping[str, Array]]
-    """Per baseline and category."""
 
 
 @dataclass(frozen=True)
@@ -63,36 +58,52 @@ class SceneModel:
             item.object_id: fits(candidates, item, settings.candidates.min_overlap)
             for item in scene.objects
         }
+        self.nearest = nearest_places(scene, candidates.location)
         self.yaws = headings(settings.candidates.n_headings)
         self._references = poses.references()
-        self._uses: dict[str, tuple[UseOfObject, Array]] = {}
-        self._given_rows: dict[tuple[str, str], NDArray[np.float32]] = {}
+        self._lattice = Lattice(candidates, poses, spacing, settings.arranging)
+        self._uses: dict[tuple[str, str], UseOfObject] = {}
+        self._wanted_rows: dict[tuple[str, str], NDArray[np.float32]] = {}
+        self._given_rows: dict[tuple[str, str, str], NDArray[np.float32]] = {}
         self._boxes: dict[tuple[str, str], Array] = {}
         self._baselines: dict[tuple[str, str], tuple[Array, Array]] = {}
+        self._random: dict[str, tuple[Array, Array]] = {}
+        self._suggested: dict[
+            tuple[str, str, str], tuple[NDArray[np.float32], float]
+        ] = {}
 
-    def use(self, category: str) -> tuple[UseOfObject, Array]:
-        """Return how people use a category here, and Z of every pose."""
-        if category not in self._uses:
-            sizes = [o.size_m for o in self.scene.objects if o.category == category]
-            use = UseOfObject(
-                self.learned.thetas.get(category, BROAD),
-                self.candidates,
-                self.poses,
-                self.settings.candidates.spacing_m,
-                float(np.mean(sizes, axis=0)[2]) / 2,
+    def use(self, theta: str, category: str) -> UseOfObject:
+        """Return how people use a category here, under the Theta of that name."""
+        if (theta, category) not in self._uses:
+            self._uses[theta, category] = UseOfObject(
+                self.theta(theta, category),
+                self._lattice,
+                self._half_height(category),
                 self.settings.arranging,
             )
-            self._uses[category] = use, use.row()
-        return self._uses[category]
+        return self._uses[theta, category]
 
-    def given_row(self, labels: str, placement: Placement) -> NDArray[np.float32]:
+    def theta(self, theta: str, category: str) -> Theta:
+        """Return the Theta of a category, the broad one where none was learned."""
+        return self.learned.thetas[theta].get(category, BROAD)
+
+    def wanted_row(self, theta: str, category: str) -> NDArray[np.float32]:
+        """Return Z of every pose for a wanted object, scaled, shape (q,)."""
+        if (theta, category) not in self._wanted_rows:
+            row = dpmm.scale_row(self.use(theta, category).row())
+            self._wanted_rows[theta, category] = row
+        return self._wanted_rows[theta, category]
+
+    def given_row(
+        self, theta: str, labels: str, placement: Placement
+    ) -> NDArray[np.float32]:
         """Return Psi_human of a given object with every pose, scaled, shape (q,)."""
-        key = labels, placement.object_id
+        key = theta, labels, placement.object_id
         if key not in self._given_rows:
             item = self.items[placement.object_id]
             yaw = float(rigid.yaw_of(placement.orientation))
             log_psi = log_psi_human(
-                self.learned.thetas.get(item.category, BROAD),
+                self.theta(theta, item.category),
                 np.array([[*placement.location, yaw]]),
                 np.array([item.has_front]),
                 self._references,
@@ -123,3 +134,35 @@ class SceneModel:
                 density = histogram_density(*args)
             self._baselines[method, category] = density, self.smooth(density)
         return self._baselines[method, category]
+
+    def random_density(self, category: str) -> tuple[Array, Array]:
+        """Return the density by people drawn from P0, and it smoothed, (p,) each."""
+        if category not in self._random:
+            density = self.use("dp", category).density(self.poses.prior)
+            self._random[category] = density, self.smooth(density)
+        return self._random[category]
+
+    def object_density(
+        self, labels: str, category: str, given: Sequence[Placement]
+    ) -> tuple[Array, Array]:
+        """Return the density of the object context, and it smoothed, (p,) each."""
+        parts = []
+        for placement in given:
+            key = labels, placement.object_id, category
+            if key not in self._suggested:
+                self._suggested[key] = pair_density(
+                    self.learned.relations,
+                    category,
+                    given_object(self.items[placement.object_id], placement),
+                    self.candidates,
+                    self._half_height(category),
+                )
+            parts.append(self._suggested[key])
+        n_places = len(self.candidates.location)
+        density = mix(parts, n_places, self.learned.relations.sharpness)
+        return density, self.smooth(density)
+
+    def _half_height(self, category: str) -> float:
+        """Return half the mean height of the objects of a category [m]."""
+        sizes = [o.size_m for o in self.scene.objects if o.category == category]
+        return float(np.mean(sizes, axis=0)[2]) / 2

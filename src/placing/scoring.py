@@ -4,125 +4,163 @@ An answer to a question with given objects is compared with the arrangement thes
 from; an answer for the empty room is compared with every arrangement. The method
 `labels` is one labelled arrangement compared with another: the spread between people,
 which no method can be expected to beat.
+
+Shapes: a arrangements, n objects of the scene, p places, r rows of a table.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import permutations
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
-from placing.answer_tables import LOCATION, PLACED
-from placing.candidates import Candidates
-from placing.metrics import ERRORS, errors
-from placing.scene import Arrangement, Scene, resting_point
+from placing import rigid
+from placing.answer_tables import LOCATION, NO_PLACE, ORIENTATION, PLACED
+from placing.metrics import ERRORS, LABELS, distances, match_locations
+from placing.scene import Scene
 
 Array = NDArray[np.float64]
-
-LABELS = "labels"
-"""The method that answers with another labelled arrangement."""
-
-
-COLUMNS = ["method", "labels", "object", "category", "status", *ERRORS, "nll"]
+ANSWER_COLUMNS = (
+    *("scene", "method", "question", "labels", "object", "category", "status"),
+    *(*LOCATION, *ORIENTATION),
+)
+"""What is read of the table of answers."""
+Pair = tuple[int, int, int, bool]
+"""Arrangement, object, row of the pose compared with that label, is it placed."""
+Members = tuple[list[int], list[int], list[bool]]
+"""Objects of an answer, the rows of their poses, and whether they are placed."""
 
 
 @dataclass(frozen=True)
-class ScoringConfig:
-    """Settings of the scores; the values live in `config/config.yaml`."""
+class Labelled:
+    """The labelled arrangements of a scene, objects sorted by their name."""
 
-    uniform_share: float
-    """Share of a uniform density mixed into every density before its log is taken."""
+    arrangements: tuple[str, ...]
+    objects: tuple[str, ...]
+    categories: tuple[str, ...]
+    """(n,) of the objects."""
+    has_front: NDArray[np.bool_]
+    """(n,)"""
+    poses: Array
+    """(a, n, 7) location, then orientation."""
 
 
 def score_scene(
     scene: Scene,
     answers: pd.DataFrame,
-    densities: Mapping[str, Array],
-    candidates: Candidates,
-    spacing_m: float,
-    config: ScoringConfig,
+    likelihoods: pd.DataFrame,
 ) -> pd.DataFrame:
     """Return one row per method, labelled arrangement and object.
 
-    `densities` (p,) per key of `density_key`; nll is in nats, of a density per square
-    metre of placing area. An object without a placement has errors NaN.
+    `likelihoods` holds the nll and rank of every labelled place. An object without a
+    placement has errors NaN, one without a front has no orientation error, and
+    `labels` have no likelihood.
     """
-    nearest = _nearest_places(scene, candidates)
-    rows = list(_spread(scene))
-    keys = ["method", "question", "category"]
-    for key, table in answers.groupby(keys):
-        method, question, category = (str(part) for part in key)
-        density = densities[density_key(method, question, category)]
-        log_density = _log_density(density, spacing_m, config)
-        given = table["labels"].iloc[0]
-        for labels in [given] if given else list(nearest):
-            for name, status, found in _score(table, scene, labels, category):
-                nll = -log_density[nearest[labels][name]]
-                rows.append((method, labels, name, category, status, *found, nll))
-    scores = pd.DataFrame(rows, columns=COLUMNS)
-    return scores.assign(scene=scene.scene)
+    labelled = _labelled(scene)
+    poses = labelled.poses.reshape(-1, 7)
+    given = answers[[*LOCATION, *ORIENTATION]].to_numpy(float)
+    poses = np.concatenate([poses, given])  # (r, 7)
+    pairs = _spread(labelled, poses)
+    methods = [LABELS] * len(pairs)
+    for group, members in _groups(answers, labelled).items():
+        method, _, _, labels = group
+        found = [
+            pair
+            for a, name in enumerate(labelled.arrangements)
+            if labels in ("", name)
+            for pair in _compare(labelled, poses, a, *members)
+        ]
+        pairs += found
+        methods += [method] * len(found)
+    table = _table(labelled, poses, pairs).assign(method=methods, scene=scene.scene)
+    # Of a method, only one question is about an object under one arrangement.
+    keys = ["method", "labels", "object"]
+    fit = likelihoods[[*keys, "nll", "rank"]]
+    return table.merge(fit, on=keys, how="left", validate="many_to_one")
 
 
-def density_key(method: str, question: str, category: str) -> str:
-    """Return the name under which a density is stored."""
-    return f"{method}/{question}/{category}"
+def _labelled(scene: Scene) -> Labelled:
+    """Return the labelled arrangements of a scene as arrays."""
+    items = sorted(scene.objects, key=lambda item: item.object_id)
+    poses = []
+    for arrangement in scene.arrangements:
+        by_object = {p.object_id: p for p in arrangement.placements}
+        placements = [by_object[item.object_id] for item in items]
+        poses += [np.append(p.location, p.orientation) for p in placements]
+    shape = (len(scene.arrangements), len(items))
+    return Labelled(
+        tuple(arrangement.name for arrangement in scene.arrangements),
+        tuple(item.object_id for item in items),
+        tuple(item.category for item in items),
+        np.array([item.has_front for item in items], np.bool_),
+        np.array(poses, float).reshape(*shape, 7),
+    )
 
 
-def _score(
-    wanted: pd.DataFrame, scene: Scene, labels: str, category: str
-) -> Iterator[tuple[str, str, Array]]:
-    """Yield each labelled object of a category, its status and its errors (3,)."""
-    labelled = _locations(scene, labels, category)
-    status = dict(zip(wanted["object"], wanted["status"], strict=True))
-    location = dict(zip(wanted["object"], wanted[LOCATION].to_numpy(), strict=True))
-    placed = [name for name in labelled if status[name] == PLACED]
-    at = np.array([location[name] for name in placed], float).reshape(-1, 3)
-    to = np.array([labelled[name] for name in placed]).reshape(-1, 3)
-    found = dict(zip(placed, errors(at, to)[1], strict=True))
-    for name in labelled:
-        yield name, status[name], found.get(name, np.full(3, np.nan))
+def _groups(
+    answers: pd.DataFrame, labelled: Labelled
+) -> dict[tuple[str, str, str, str], Members]:
+    """Return the members by method, question, category and labels, sorted."""
+    number = {name: n for n, name in enumerate(labelled.objects)}
+    first = labelled.poses.shape[0] * labelled.poses.shape[1]
+    names = ("method", "question", "category", "labels", "object", "status")
+    groups: dict[tuple[str, str, str, str], Members] = {}
+    columns = [answers[name].tolist() for name in names]
+    for row, (*key, name, status) in enumerate(zip(*columns, strict=True), first):
+        objects, rows, is_placed = groups.setdefault(tuple(key), ([], [], []))
+        objects.append(number[name])
+        rows.append(row)
+        is_placed.append(status == PLACED)
+    return dict(sorted(groups.items()))
 
 
-def _spread(scene: Scene) -> Iterator[tuple[object, ...]]:
-    """Yield the errors of each labelled arrangement against each other one."""
-    categories = sorted({item.category for item in scene.objects})
-    for one, other in permutations(scene.arrangements, 2):
-        for category in categories:
-            at = np.array(list(_locations(scene, other.name, category).values()))
-            labelled = _locations(scene, one.name, category)
-            _, found = errors(at, np.array(list(labelled.values())))
-            for name, values in zip(labelled, found, strict=True):
-                yield LABELS, one.name, name, category, PLACED, *values, np.nan
+def _compare(
+    labelled: Labelled,
+    poses: Array,
+    a: int,
+    objects: Sequence[int],
+    rows: Sequence[int],
+    is_placed: Sequence[bool],
+) -> list[Pair]:
+    """Return the objects of one category with the poses matched to their labels."""
+    placed = np.flatnonzero(is_placed)
+    to, at = np.array(objects)[placed], np.array(rows)[placed]
+    matched = match_locations(poses[at, :3], labelled.poses[a, to, :3])
+    pose_of = dict(zip(to.tolist(), at[matched].tolist(), strict=True))
+    return [(a, n, pose_of.get(n, 0), n in pose_of) for n in sorted(objects)]
 
 
-def _locations(scene: Scene, labels: str, category: str) -> dict[str, Array]:
-    """Return where an arrangement has the objects of a category, by object."""
-    ids = {item.object_id for item in scene.objects if item.category == category}
-    arrangement = next(a for a in scene.arrangements if a.name == labels)
-    placements = sorted(arrangement.placements, key=lambda p: p.object_id)
-    return {p.object_id: p.location for p in placements if p.object_id in ids}
+def _spread(labelled: Labelled, poses: Array) -> list[Pair]:
+    """Return each labelled arrangement compared with each other one."""
+    n_objects = len(labelled.objects)
+    by_category: dict[str, list[int]] = {}
+    for n, category in enumerate(labelled.categories):
+        by_category.setdefault(category, []).append(n)
+    pairs: list[Pair] = []
+    for one, other in permutations(range(len(labelled.arrangements)), 2):
+        for objects in by_category.values():
+            rows = [other * n_objects + n for n in objects]
+            every = [True] * len(objects)
+            pairs += _compare(labelled, poses, one, objects, rows, every)
+    return pairs
 
 
-def _nearest_places(scene: Scene, candidates: Candidates) -> dict[str, dict[str, int]]:
-    """Return the place nearest to where each labelled object rests, by arrangement."""
-    items = {item.object_id: item for item in scene.objects}
-    places = KDTree(candidates.location)
-
-    def of(arrangement: Arrangement) -> dict[str, int]:
-        placements = arrangement.placements
-        resting = [resting_point(items[p.object_id], p) for p in placements]
-        nearest = places.query(np.array(resting))[1]
-        names = [p.object_id for p in placements]
-        return dict(zip(names, nearest.tolist(), strict=True))
-
-    return {arrangement.name: of(arrangement) for arrangement in scene.arrangements}
-
-
-def _log_density(density: Array, spacing_m: float, config: ScoringConfig) -> Array:
-    """Return the log of a density per square metre, never -inf, shape (p,)."""
-    share = config.uniform_share
-    mixed = (1 - share) * density + share / len(density)
-    return np.log(mixed / spacing_m**2)
+def _table(labelled: Labelled, poses: Array, pairs: list[Pair]) -> pd.DataFrame:
+    """Return what is compared and its errors, one row per pair."""
+    a, n, row = np.array([pair[:3] for pair in pairs], np.intp).reshape(-1, 3).T
+    is_placed = np.array([pair[3] for pair in pairs], np.bool_)
+    label, pose = labelled.poses[a, n], poses[row]
+    found = np.where(is_placed[:, None], distances(pose[:, :3] - label[:, :3]), np.nan)
+    turn = rigid.wrap(rigid.yaw_of(pose[:, 3:]) - rigid.yaw_of(label[:, 3:]))
+    is_turned = is_placed & labelled.has_front[n]
+    columns = {
+        "labels": np.array(labelled.arrangements, object)[a],
+        "object": np.array(labelled.objects, object)[n],
+        "category": np.array(labelled.categories, object)[n],
+        "status": np.where(is_placed, PLACED, NO_PLACE).astype(object),
+        **dict(zip(ERRORS, found.T, strict=True)),
+        "orientation_error_deg": np.where(is_turned, np.degrees(np.abs(turn)), np.nan),
+    }
+    return pd.DataFrame(columns)

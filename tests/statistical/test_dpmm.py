@@ -1,85 +1,121 @@
-"""The sampler visits partitions as often as exact enumeration says it should."""
+"""The sampler visits partitions and poses as often as exact enumeration says."""
 
-from collections import Counter
 from math import factorial
 
 import numpy as np
 import pytest
+from enumeration import enumerate_all, iid_variation, pack, scene_of, variation
 
 from placing import dpmm
 
-N_POSES = 3
+N_OBJECTS = 5
+N_POSES = 90
+"""Three tiles, the last one not full."""
+THIN = 5
+"""Sweeps between two that count, after which a chain has forgotten the first."""
+N_DRAWS = 12_000
+
+SAMPLERS = {
+    "exact birth": ("exact_birth", 0, 0),
+    "algorithm 8, m = 1": ("algorithm8", 1, 0),
+    "algorithm 8, m = 3": ("algorithm8", 3, 0),
+    "finite mixture": ("exact_birth", 0, 3),
+    "finite mixture, m = 3": ("algorithm8", 3, 3),
+}
 
 
-def partitions(items):
-    """Yield every set partition of `items` as a list of blocks."""
-    if not items:
-        yield []
-        return
-    head, *rest = items
-    for partition in partitions(rest):
-        yield [[head], *partition]
-        for b, block in enumerate(partition):
-            yield [*partition[:b], [head, *block], *partition[b + 1 :]]
+def run(rng, rows, prior, kind="exact birth", concentration=1.0, **settings):
+    """Return the chains of a kind of sampler."""
+    sampler, m, n_components = SAMPLERS[kind]
+    given = {"n_chains": 2, "n_burn_in": 100, "n_samples": N_DRAWS * THIN // 2}
+    config = dpmm.DpmmConfig(sampler, concentration, m, **(given | settings))
+    slot = np.arange(len(rows)) - len(rows) + 1  # the last object is wanted
+    slot = np.where(slot < 0, -1, slot)
+    return dpmm.sample(rng, rows, prior, config, slot, n_components)
 
 
-def exact_distribution(rows, prior, concentration):
-    """Return P(partition) by summing the joint over every pose of every block."""
-    weight = {}
-    for partition in partitions(list(range(len(rows)))):
-        w = 1.0
-        for block in partition:
-            w *= concentration * factorial(len(block) - 1)
-            w *= prior @ rows[block].prod(0)
-        weight[frozenset(map(frozenset, partition))] = w
-    total = sum(weight.values())
-    return {partition: w / total for partition, w in weight.items()}
+def visits_of(chain, chains=slice(None)):
+    """Return how often every partition is visited, and poses of the first object."""
+    choice = chain.choice[chains, ::THIN].reshape(-1, chain.choice.shape[2])
+    pose = chain.pose[chains, ::THIN, 0].ravel()
+    partitions = np.bincount(pack(choice), minlength=2**10)
+    return partitions, np.bincount(pose, minlength=N_POSES)
 
 
-def partition_of(choice):
-    """Return the partition of the objects by the pose they picked."""
-    return frozenset(frozenset(np.flatnonzero(choice == k)) for k in set(choice))
-
-
-@pytest.mark.parametrize("m", [0, 1, 3])
 @pytest.mark.parametrize("concentration", [0.8, 3.0])
-def test_partitions_are_visited_as_often_as_enumeration_says(m, concentration):
-    rng = np.random.default_rng(0)
-    rows = dpmm.weight_rows(rng.normal(scale=1.5, size=(4, N_POSES)))
-    prior = np.array([0.5, 0.3, 0.2])
-    sampler = "algorithm8" if m else "exact_birth"
-    config = dpmm.DpmmConfig(sampler, concentration, m, 1, 100, 200_000)
-
-    chain = dpmm.sample(rng, rows, prior, config)
-    visits = Counter(map(tuple, chain.choice[0]))
-    share = Counter()
-    for choice, n in visits.items():
-        share[partition_of(np.array(choice))] += n / config.n_samples
-
-    exact = exact_distribution(rows.astype(float), prior, concentration)
-    distance = 0.5 * sum(abs(share[p] - q) for p, q in exact.items())
-    assert distance < 0.01, f"total variation {distance:.4f} between chain and truth"
+@pytest.mark.parametrize("kind", SAMPLERS)
+def test_partitions_and_poses_are_visited_as_often_as_enumeration_says(
+    kind, concentration
+):
+    rng = np.random.default_rng(3)
+    rows, prior = scene_of(rng, N_OBJECTS, N_POSES, 1.5)
+    n_components = SAMPLERS[kind][2]
+    partition, pose = enumerate_all(rows, prior, concentration, n_components)
+    by_partition, by_pose = visits_of(run(rng, rows, prior, kind, concentration))
+    assert variation(by_partition, partition) < iid_variation(partition, N_DRAWS)
+    assert variation(by_pose, pose[0]) < iid_variation(pose[0], N_DRAWS)
 
 
-def test_a_single_object_picks_poses_in_proportion_to_prior_and_potential():
+@pytest.mark.parametrize("change", [{"concentration": 1.15}, {"n_components": 8}])
+def test_a_slightly_wrong_model_does_not_pass_as_the_right_one(change):
+    rng = np.random.default_rng(3)
+    rows, prior = scene_of(rng, N_OBJECTS, N_POSES, 1.5)
+    exact = enumerate_all(rows, prior, **({"concentration": 1.0} | change))[0]
+    visits = visits_of(run(rng, rows, prior))[0]
+    assert variation(visits, exact) > iid_variation(exact, N_DRAWS)
+
+
+@pytest.mark.parametrize("kind", ["exact birth", "algorithm 8, m = 3"])
+def test_the_order_of_objects_and_of_poses_does_not_matter(kind):
+    rng = np.random.default_rng(4)
+    rows, prior = scene_of(rng, N_OBJECTS, N_POSES, 1.5)
+    exact = enumerate_all(rows, prior, 1.0)[0]
+    objects, poses = rng.permutation(N_OBJECTS), rng.permutation(N_POSES)
+    shuffled = np.ascontiguousarray(rows[objects][:, poses])
+    chain = run(rng, shuffled, prior[poses], kind)
+    choice = chain.choice[:, ::THIN].reshape(-1, N_OBJECTS)[:, np.argsort(objects)]
+    visits = np.bincount(pack(choice), minlength=2**10)
+    assert variation(visits, exact) < iid_variation(exact, N_DRAWS)
+
+
+def test_chains_from_opposite_starts_agree():
+    rng = np.random.default_rng(5)
+    rows, prior = scene_of(rng, N_OBJECTS, N_POSES, 3.0)
+    exact = enumerate_all(rows, prior, 1.0)[0]
+    chain = run(rng, rows, prior)
+    floor = iid_variation(exact, N_DRAWS // 2)
+    for r in range(2):
+        assert variation(visits_of(chain, slice(r, r + 1))[0], exact) < floor
+
+
+@pytest.mark.parametrize("kind", ["exact birth", "algorithm 8, m = 3"])
+def test_the_weight_of_a_wanted_object_is_its_exact_posterior_over_poses(kind):
+    rng = np.random.default_rng(6)
+    rows, prior = scene_of(rng, N_OBJECTS, N_POSES, 1.5)
+    chain = run(rng, rows, prior, kind)
+    weight = chain.weight[:, 0].mean(0)
+    seen, unseen = weight[:-1], weight[-1]
+    born = prior * rows[-1] / (prior @ rows[-1])
+    exact = enumerate_all(rows, prior, 1.0)[1][-1]
+    assert seen.sum() + unseen == pytest.approx(1)
+    distance = 0.5 * np.abs(seen + unseen * born - exact).sum()
+    assert distance < iid_variation(exact, N_DRAWS)
+
+
+@pytest.mark.parametrize("kind", SAMPLERS)
+def test_a_single_object_picks_poses_in_proportion_to_prior_and_potential(kind):
     rng = np.random.default_rng(1)
-    rows = dpmm.weight_rows(rng.normal(size=(1, N_POSES)))
-    prior = np.array([0.5, 0.3, 0.2])
-    chain = dpmm.sample(
-        rng, rows, prior, dpmm.DpmmConfig("algorithm8", 1.0, 4, 1, 10, 50_000)
-    )
-    share = np.bincount(chain.pose[0, :, 0], minlength=N_POSES) / 50_000
-    exact = prior * rows[0] / (prior * rows[0]).sum()
-    assert np.abs(share - exact).max() < 0.01
+    rows, prior = scene_of(rng, 1, N_POSES, 1.5)
+    chain = run(rng, rows, prior, kind)
+    exact = prior * rows[0] / (prior @ rows[0])
+    assert variation(visits_of(chain)[1], exact) < iid_variation(exact, N_DRAWS)
 
 
 def test_log_joint_is_the_log_of_the_product_it_names():
     rng = np.random.default_rng(2)
-    rows = dpmm.weight_rows(rng.normal(size=(5, N_POSES)))
-    prior = np.array([0.5, 0.3, 0.2])
-    chain = dpmm.sample(
-        rng, rows, prior, dpmm.DpmmConfig("algorithm8", 0.7, 2, 1, 0, 50)
-    )
+    rows, prior = scene_of(rng, N_OBJECTS, 3, 1.0)
+    settings = {"n_burn_in": 0, "n_samples": 50}
+    chain = run(rng, rows, prior, "algorithm 8, m = 3", 0.7, **settings)
     for choice, pose, log_joint in zip(
         chain.choice[0], chain.pose[0], chain.log_joint[0], strict=True
     ):

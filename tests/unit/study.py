@@ -3,22 +3,24 @@
 import numpy as np
 
 from placing import rigid
-from placing.arranging import ArrangingConfig
 from placing.baselines import BaselinesConfig
-from placing.candidates import Candidates, CandidatesConfig, find_candidates
+from placing.candidates import Candidates, CandidatesConfig
 from placing.clouds.ply import Cloud
 from placing.decision import DecisionConfig
 from placing.dpmm import DpmmConfig
-from placing.human import HumanPoses, PosesConfig, valid_poses
+from placing.human import HumanPoses
+from placing.lattice import ArrangingConfig
+from placing.places import find_candidates
 from placing.scene import Arrangement, Placement, PlacingArea, Scene, SceneObject
 from placing.scene_model import Settings
+from placing.valid_poses import PosesConfig, valid_poses
 
 SETTINGS = Settings(
     CandidatesConfig(0.05, 8, 0.7, 0.05),
     DpmmConfig("exact_birth", 1.0, 8, 2, 20, 40),
     ArrangingConfig(4.0, 0.1),
     DecisionConfig(0.2, 0.25),
-    BaselinesConfig(0.05, 0.05, 0.1, 0.2, 3.0, 1.0),
+    BaselinesConfig(0.05, 0.05, 0.1, 0.2, 3.0, 1.0, 1.0, 0.7, 12.0, 0.1, 0.1, 1.0),
 )
 OBJECTS = (
     SceneObject("laptop1", "laptop", "laptop", (0.25, 0.35, 0.25), 2.0, True, False),

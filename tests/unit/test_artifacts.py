@@ -11,9 +11,7 @@ from placing.artifacts.densities import read_densities, write_densities
 from placing.artifacts.features import read_features, write_features
 from placing.artifacts.formats import read_arrays, read_table, write_json, write_table
 from placing.artifacts.scenes import read_scene, write_scene
-from placing.artifacts.theta import read_learned
 from placing.errors import BadArtifact
-from placing.fitting import BROAD
 
 
 @pytest.fixture(scope="module")
@@ -50,34 +48,6 @@ def test_densities_come_back_by_key(tmp_path):
     again = read_densities(tmp_path / "d.npz")
     assert sorted(again) == sorted(densities)
     np.testing.assert_array_equal(again["dp/all/mug"], [0.25, 0.75])
-
-
-def write_theta(folder, **changes):
-    write_json(folder / "dp.json", {"categories": {"mug": vars(BROAD) | changes}})
-    for method in ("height", "room"):
-        write_json(folder / f"{method}.json", {"categories": {"mug": [0.5, 0.5]}})
-
-
-def test_theta_comes_back(tmp_path):
-    write_theta(tmp_path)
-    thetas = read_learned(tmp_path).thetas
-    np.testing.assert_allclose(thetas["mug"].vector(), BROAD.vector(), atol=1e-9)
-
-
-@pytest.mark.parametrize("value", [None, "1", True])
-def test_a_theta_that_is_no_number_is_named(tmp_path, value):
-    write_theta(tmp_path, height_sigma_m=value)
-    with pytest.raises(BadArtifact, match=r"dp.json: categories.mug.height_sigma_m"):
-        read_learned(tmp_path)
-
-
-def test_a_theta_that_is_missing_is_named(tmp_path):
-    write_theta(tmp_path)
-    document = json.loads((tmp_path / "dp.json").read_text())
-    del document["categories"]["mug"]["bearing_kappa"]
-    (tmp_path / "dp.json").write_text(json.dumps(document))
-    with pytest.raises(BadArtifact, match="bearing_kappa: value None"):
-        read_learned(tmp_path)
 
 
 def test_missing_and_damaged_files_are_named(tmp_path):

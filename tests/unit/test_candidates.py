@@ -5,11 +5,11 @@ import pytest
 
 from placing.candidates import (
     CandidatesConfig,
-    find_candidates,
     fits,
     is_unoccupied,
 )
 from placing.clouds.ply import Cloud
+from placing.places import find_candidates
 from placing.scene import PlacingArea, SceneObject
 
 CONFIG = CandidatesConfig(0.05, 8, 0.7, 0.05)

@@ -7,8 +7,9 @@ import pandas as pd
 import pytest
 from matplotlib.colors import to_hex
 
+from placing import metrics
 from placing.errors import BadInput, UnknownName
-from placing.figures import LABELS, METHODS, plot_figure6, save_figure
+from placing.figures import LABELS, METHODS, PALETTE, plot_figure6, save_figure
 
 CATEGORIES = ("book", "trash_bin", "AVG")
 
@@ -20,7 +21,12 @@ def table_of(methods: tuple[str, ...], tasks: tuple[str, ...] = ("filled", "empt
     table.insert(0, "dataset", "rooms")
     value = 1 + np.arange(len(table)) / 100
     return table.assign(
-        n=10, location_m=value, location_se_m=0.1, height_m=value / 4, height_se_m=0.02
+        n=10,
+        location_m=value,
+        location_se_m=0.1,
+        height_m=value / 4,
+        height_se_m=0.02,
+        unmixed=np.nan,
     )
 
 
@@ -87,6 +93,26 @@ def test_a_category_that_a_method_lacks_leaves_a_gap():
     location, _ = plot_figure6(lacking, "filled").axes
     assert np.isnan(heights_of_bars(location, "dp")[0])
     assert not np.isnan(heights_of_bars(location, "dp")[1:]).any()
+
+
+def test_the_numbers_of_the_average_stand_over_its_bars():
+    table = table_of(("chance", "dp"))
+    location, _ = plot_figure6(table, "filled").axes
+    average = table[(table["task"] == "filled") & (table["category"] == "AVG")]
+    written = [text.get_text() for text in location.texts]
+    assert written == [f"{value:.2f}" for value in average["location_m"]]
+
+
+def test_chains_outside_the_gates_are_named_with_their_share():
+    table = table_of(("chance", "dp"))
+    assert "gates" not in plot_figure6(table, "filled").get_suptitle()
+    table.loc[table["method"] == "dp", "unmixed"] = 0.125
+    assert "DP 12.5 %" in plot_figure6(table, "filled").get_suptitle()
+
+
+def test_every_method_has_its_own_colour_in_the_order_of_the_tables():
+    assert tuple(PALETTE) == tuple(METHODS) == metrics.METHODS
+    assert len(set(PALETTE.values())) == len(PALETTE)
 
 
 def test_the_data_set_is_named_in_the_title():

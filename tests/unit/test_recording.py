@@ -11,12 +11,15 @@ import pytest
 from rerun.chunk import RrdReader
 
 from placing import skeleton
-from placing.recordings.content import Boxes, Mesh, SceneRecording, summary
+from placing.diagnostics import DIAGNOSTIC_COLUMNS
+from placing.recordings.blueprint import hidden
+from placing.recordings.content import Boxes, Mesh, SceneRecording, Term, Use
+from placing.recordings.words import reasons, summary
 from placing.recordings.writer import count_rows, write_recording
 from placing.scene import PlacingArea
 
 RERUN = Path(sys.executable).with_name("rerun")
-N_SWEEPS = 20
+N_SWEEPS, N_CHAINS = 20, 4
 
 
 def some_boxes(rng: np.random.Generator, *names: str) -> Boxes:
@@ -41,6 +44,38 @@ def some_poses(rng: np.random.Generator, n: int) -> pd.DataFrame:
     return pd.DataFrame(columns)
 
 
+def some_trace(rng: np.random.Generator) -> pd.DataFrame:
+    """Return the trace of every chain, chain after chain."""
+    columns = {
+        "chain": np.repeat(np.arange(N_CHAINS), N_SWEEPS),
+        "sweep": np.tile(np.arange(N_SWEEPS), N_CHAINS),
+        "log_joint": rng.normal(size=N_CHAINS * N_SWEEPS),
+        "n_poses": rng.integers(1, 5, N_CHAINS * N_SWEEPS),
+        "p_new": rng.uniform(size=N_CHAINS * N_SWEEPS),
+    }
+    return pd.DataFrame(columns)
+
+
+def diagnosis(question: str, is_mixed: bool) -> dict[str, object]:
+    """Return the diagnosis of a question; the numbers do not matter."""
+    row = dict.fromkeys(DIAGNOSTIC_COLUMNS, 1.0) | {"scene": "kitchen1"}
+    return row | {"question": question, "is_mixed": is_mixed}
+
+
+USES = {
+    "mug1": Use(
+        kind="sitting_upright",
+        location=np.array([1.0, 2.0, 0.45]),
+        yaw=np.pi / 2,
+        share=0.625,
+        area="area1",
+        alternative=np.array([0.5, 0.25, 0.74]),
+        terms=(Term("distance", -1.0, -4.0, True), Term("height", -0.5, -0.4, False)),
+    ),
+    "book1": Use("", np.full(3, np.nan), np.nan, np.nan, "", np.full(3, np.nan), ()),
+}
+
+
 @pytest.fixture
 def content() -> SceneRecording:
     """Return a small scene with something of everything."""
@@ -61,13 +96,10 @@ def content() -> SceneRecording:
         ),
         valid_poses=some_poses(rng, 300),
         sampled_poses=some_poses(rng, 3 * N_SWEEPS),
-        trace=pd.DataFrame(
-            {
-                "sweep": np.arange(N_SWEEPS),
-                "log_likelihood": rng.normal(size=N_SWEEPS),
-                "n_poses": 3,
-            }
-        ),
+        question="labeller1/book",
+        trace=some_trace(rng),
+        diagnoses=pd.DataFrame([diagnosis("labeller1/book", True)]),
+        uses=USES,
         given=some_boxes(rng, "plate1"),
         predicted=predicted,
         labelled=labelled,
@@ -104,7 +136,8 @@ def test_a_recording_holds_every_part_of_the_scene(tmp_path, content):
     write_recording(path, content)
     rows = count_rows(path)
     static = {
-        *("/summary", "/world", "/world/areas", "/world/cloud/room"),
+        *("/summary", "/reasons", "/world", "/world/areas", "/world/uses/mug1"),
+        *("/world/uses/book1", "/world/cloud/room"),
         *("/world/cloud/front", "/world/density/book", "/world/density/dishware"),
         *("/world/meshes/mug1", "/world/objects/errors", "/world/objects/given"),
         *("/world/objects/labelled", "/world/objects/predicted", "/world/poses/valid"),
@@ -112,7 +145,8 @@ def test_a_recording_holds_every_part_of_the_scene(tmp_path, content):
     assert static <= set(rows)
     for entity in ("/world/poses/joints", "/world/poses/names"):
         assert rows[entity] == N_SWEEPS
-    for entity in ("/world/poses/limbs", "/diagnostics/log_likelihood"):
+    series = ("log_joint", "n_poses", "p_new")
+    for entity in ("/world/poses/limbs", *(f"/diagnostics/{name}" for name in series)):
         assert rows[entity] == N_SWEEPS + 1, "one more for the static style"
     assert rerun("verify", path).returncode == 0
 
@@ -156,7 +190,7 @@ def test_the_same_content_gives_the_same_recording(tmp_path, content):
     a, b, other = (tmp_path / name for name in ("a.rrd", "b.rrd", "other.rrd"))
     write_recording(a, content)
     write_recording(b, content)
-    trace = content.trace.assign(log_likelihood=content.trace["log_likelihood"] + 1e-4)
+    trace = content.trace.assign(log_joint=content.trace["log_joint"] + 1e-4)
     write_recording(other, replace(content, trace=trace))
     assert rerun("compare", "--unordered", a, b).returncode == 0
     assert rerun("compare", "--unordered", a, other).returncode == 1
@@ -171,6 +205,8 @@ def test_an_empty_room_without_people_or_predictions_can_be_recorded(tmp_path, c
         **dict.fromkeys(("given", "predicted", "labelled"), nothing),
         **dict.fromkeys(("sampled_poses", "valid_poses"), nobody),
         trace=content.trace.iloc[:0],
+        diagnoses=content.diagnoses.iloc[:0],
+        uses={},
         errors_m=np.zeros(0),
         log_density=np.zeros(0),
         point_normals=np.zeros((0, 3)),
@@ -209,3 +245,57 @@ def test_the_summary_says_how_far_off_each_object_is_and_what_the_data_are_not(c
     for name, error in zip(content.predicted.names, content.errors_m, strict=True):
         assert f"| {name} | {error:.2f} |" in text
     assert "not the data set of the paper" in text
+
+
+def test_each_chain_is_a_series_of_its_own(tmp_path, content):
+    path = tmp_path / "kitchen1.rrd"
+    shuffled = content.trace.sample(frac=1, random_state=0)
+    write_recording(path, replace(content, trace=shuffled))
+    rows = column(path, "/diagnostics/p_new", "Scalars:scalars")
+    expected = content.trace["p_new"].to_numpy().reshape(N_CHAINS, N_SWEEPS).T
+    np.testing.assert_array_equal([row for row in rows if row is not None], expected)
+
+
+def test_the_user_of_an_object_is_linked_to_it(tmp_path, content):
+    path = tmp_path / "kitchen1.rrd"
+    write_recording(path, content)
+    (lines,) = column(path, "/world/uses/mug1", "LineStrips3D:strips")
+    use = content.uses["mug1"]
+    body = skeleton.place(use.kind, use.location[None], np.array([use.yaw]))[0]
+    torso, mug = body[skeleton.JOINTS.index("torso")], content.predicted.centers[0]
+    np.testing.assert_allclose(lines[3], [torso, mug], atol=1e-5)
+    np.testing.assert_allclose(lines[-1][-1], use.alternative, atol=1e-5)
+    (points,) = column(path, "/world/uses/mug1", "Points3D:positions")
+    np.testing.assert_allclose(points, [body[0], use.alternative], atol=1e-5)
+
+
+def test_the_summary_marks_chains_outside_the_gates(content):
+    assert "within the gates" in summary(content)
+    assert "OUTSIDE" not in summary(content)
+    rows = [diagnosis("labeller1/book", True), diagnosis("labeller1/mug", False)]
+    text = summary(replace(content, diagnoses=pd.DataFrame(rows)))
+    assert "1 of the 2 questions shown are within the gates" in text
+    assert "Chains of `labeller1/mug` are **OUTSIDE THE GATES**" in text
+
+
+def test_the_words_say_who_uses_an_object_and_why_it_is_not_elsewhere(content):
+    assert "| sitting upright 62% |" in summary(content)
+    text = reasons(content)
+    assert "Best other place: area1 at (0.50, 0.25, 0.74) m." in text
+    assert "| **distance, decisive** | -1.00 | -4.00 |" in text
+    assert "| height | -0.50 | -0.40 |" in text
+    assert "There is no other place." in text
+
+
+def test_only_the_users_of_the_largest_objects_are_seen_at_first(content):
+    rng = np.random.default_rng(0)
+    names = ("pen", "tv", "mug", "book", "lamp")
+    sizes = np.array([0.1, 0.9, 0.2, 0.3, 0.5])[:, None] * [1, 1, 1]
+    predicted = replace(some_boxes(rng, *names), sizes=sizes)
+    off = hidden(replace(content, predicted=predicted))
+    assert {path for path in off if "uses" in path} == {
+        "world/uses/pen",
+        "world/uses/mug",
+    }
+    assert "world/density/dishware" not in off
+    assert "world/density/book" in off

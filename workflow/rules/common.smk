@@ -25,6 +25,7 @@ os.environ.setdefault("PYTHONHASHSEED", "0")
 os.environ.setdefault("MPLBACKEND", "Agg")
 
 TASKS = ["filled", "empty"]
+ANSWERING = ["candidates", "sampling", "arranging", "decision", "baselines"]
 
 
 def schema_of(name):
@@ -68,12 +69,18 @@ FOLDS = {
 }
 ROOM_SCENES = [row["scene"] for row in SCENES if row["dataset"] == "rooms"]
 ROOM_FILES = [f"resources/rooms/{scene}.yaml" for scene in ROOM_SCENES]
+OFFICE = next(
+    (r for r in SCENES if (r["dataset"], r["kind"]) == ("rooms", "office")),
+    {"scene": "none", "fold": 0},
+)
+"""The room of the figures 4 and 5 of the paper: the first office of the sheet."""
 
 
 wildcard_constraints:
     dataset="|".join(DATASETS),
     fold="|".join(sorted({str(row["fold"]) for row in SCENES})),
     task="|".join(TASKS),
+    held_out=r"fold\d+(_fold\d+)?",
 
 
 def scenes_of(wildcards):
@@ -112,7 +119,11 @@ def leaves():
     paths = [
         "fold{fold}.csv",
         "tables/figure6.md",
+        "tables/claims.md",
+        "tables/diagnostics.md",
+        "tables/coverage.md",
         "figures/figure6_{task}.png",
+        "figures/coverage.png",
         "recordings/fold{fold}/{task}/dp",
         "checks/passed.txt",
     ]
@@ -125,12 +136,20 @@ def leaves():
     if ROOM_SCENES:
         names = ["objects", "rooms", "arrangements"]
         found += [f"results/rooms/pictures/{name}.png" for name in names]
+        found.append("results/rooms/tables/sensitivity.md")
+    if OFFICE["scene"] in ROOM_SCENES:
+        found += [f"results/rooms/figures/figure{n}.png" for n in (4, 5)]
     return found
 
 
 def of_every_fold(path):
     """Return the input function that gives `path` in every fold and task."""
     return lambda wildcards: every(path, wildcards.dataset)
+
+
+def of_office(path):
+    """Return `path` in the fold of the office of the figures."""
+    return path.format(fold=OFFICE["fold"])
 
 
 def of_other_folds(path):
@@ -140,6 +159,35 @@ def of_other_folds(path):
         for fold in FOLDS[wildcards.dataset]
         if str(fold) != wildcards.fold
     ]
+
+
+def of_folds_left(path):
+    """Return the input function that gives `path` in the folds not held out."""
+    return lambda wildcards: [
+        path.format(dataset=wildcards.dataset, fold=fold)
+        for fold in FOLDS[wildcards.dataset]
+        if f"fold{fold}" not in wildcards.held_out.split("_")
+    ]
+
+
+def of_pairs(path):
+    """Return the input function that gives `path` without a fold and one more each."""
+    return lambda wildcards: [
+        path.format(dataset=wildcards.dataset, held_out=pair_of(wildcards, fold))
+        for fold in FOLDS[wildcards.dataset]
+        if str(fold) != wildcards.fold
+    ]
+
+
+def pair_of(wildcards, other):
+    """Return the name of two held-out folds.
+
+    Of two folds nothing is left to learn from without both: what chooses K and omega
+    is then what was learned from.
+    """
+    if len(FOLDS[wildcards.dataset]) < 3:
+        return f"fold{wildcards.fold}"
+    return "_".join(f"fold{f}" for f in sorted({int(wildcards.fold), int(other)}))
 
 
 def flags(*sections, within=""):

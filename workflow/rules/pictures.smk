@@ -6,6 +6,8 @@ OUTPUTS
 
     results/{dataset}/recordings/fold{fold}/{task}/dp/       {scene}.rrd
     results/rooms/pictures/                                  objects*, rooms*, arrangements*
+    results/rooms/figures/figure4.png, figure5.png           people of an office
+    results/rooms/recordings/figure4.rrd, figure5.rrd        the same to turn around
 """
 
 
@@ -19,6 +21,9 @@ rule record_scene:
         poses="results/{dataset}/poses/{task}/fold{fold}.parquet",
         densities="results/{dataset}/densities/{task}/fold{fold}",
         scores="results/{dataset}/scores/{task}/fold{fold}.parquet",
+        traces="results/{dataset}/traces/{task}/fold{fold}.parquet",
+        diagnostics="results/{dataset}/diagnostics/{task}/fold{fold}.parquet",
+        explanations="results/{dataset}/explanations/{task}/fold{fold}.parquet",
     output:
         recordings=directory("results/{dataset}/recordings/fold{fold}/{task}/dp"),
     log:
@@ -43,6 +48,9 @@ rule record_scene:
             --poses {input.poses:q} \
             --densities {input.densities:q} \
             --scores {input.scores:q} \
+            --traces {input.traces:q} \
+            --diagnostics {input.diagnostics:q} \
+            --explanations {input.explanations:q} \
             --recordings {output.recordings:q} \
             --seed {params.seed:q} \
             2>{log:q}
@@ -100,5 +108,57 @@ rule picture_rooms:
             --pictures results/rooms/pictures \
             --sheet-rooms {output.sheet_rooms:q} \
             --sheet-arrangements {output.sheet_arrangements:q} \
+            2>{log:q}
+        """
+
+
+rule picture_people:
+    """Draw the people imagined in an office, and how it is arranged by them."""
+    input:
+        room=f"resources/rooms/{OFFICE['scene']}.yaml",
+        room_schema="workflow/schemas/room.schema.yaml",
+        catalogue="config/objects.csv",
+        scenes=of_office("results/rooms/scenes/fold{fold}"),
+        features=of_office("results/rooms/features/fold{fold}"),
+        poses=[
+            of_office(f"results/rooms/poses/{t}/fold{{fold}}.parquet") for t in TASKS
+        ],
+        arrangements=of_office("results/rooms/arrangements/empty/fold{fold}.parquet"),
+        densities=of_office("results/rooms/densities/filled/fold{fold}"),
+    output:
+        figure4="results/rooms/figures/figure4.png",
+        figure5="results/rooms/figures/figure5.png",
+        recording4="results/rooms/recordings/figure4.rrd",
+        recording5="results/rooms/recordings/figure5.rrd",
+    log:
+        "results/logs/picture_people.log",
+    benchmark:
+        "results/benchmarks/picture_people.tsv"
+    params:
+        code=digest("picture_people"),
+        scene=OFFICE["scene"],
+        method="dp",
+        category="monitor",
+        seed=config["seed"],
+    shell:
+        r"""
+        python workflow/scripts/picture_people.py \
+            --dataset rooms \
+            --method {params.method:q} \
+            --category {params.category:q} \
+            --room {input.room:q} \
+            --schema {input.room_schema:q} \
+            --catalogue {input.catalogue:q} \
+            --scene {input.scenes}/{params.scene:q}.json \
+            --features {input.features}/{params.scene:q}.npz \
+            --poses-filled {input.poses[0]:q} \
+            --poses-empty {input.poses[1]:q} \
+            --arrangements {input.arrangements:q} \
+            --densities {input.densities}/{params.scene:q}.npz \
+            --figure4 {output.figure4:q} \
+            --figure5 {output.figure5:q} \
+            --recording4 {output.recording4:q} \
+            --recording5 {output.recording5:q} \
+            --seed {params.seed:q} \
             2>{log:q}
         """

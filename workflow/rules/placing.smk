@@ -1,5 +1,8 @@
 """Learn how people use objects in the other folds, then arrange the scenes of a fold.
 
+`held_out` names the folds that are not learned from: the fold whose scenes are
+arranged, and for choosing numbers and calibrating regions one more.
+
 INPUTS
 
     results/{dataset}/scenes/fold{fold}/                     placing areas, objects
@@ -7,40 +10,80 @@ INPUTS
 
 OUTPUTS
 
-    results/{dataset}/theta/fold{fold}/                      {method}.json
+    results/{dataset}/theta/{held_out}/                      {method}.json
+    results/{dataset}/tuning/fold{fold}.json                 K, omega, ranks
     results/{dataset}/arrangements/{task}/fold{fold}.parquet
-    results/{dataset}/poses/{task}/fold{fold}.parquet
+    results/{dataset}/likelihoods/{task}/fold{fold}.parquet  of the labelled places
+    results/{dataset}/poses/{task}/fold{fold}.parquet        samples of the first chain
     results/{dataset}/densities/{task}/fold{fold}/           {scene}.npz
+    results/{dataset}/traces/{task}/fold{fold}.parquet       every sweep of every chain
+    results/{dataset}/diagnostics/{task}/fold{fold}.parquet
+    results/{dataset}/explanations/{task}/fold{fold}.parquet
     results/{dataset}/scores/{task}/fold{fold}.parquet
     results/{dataset}/fold{fold}.csv
 """
 
 
 rule learn_theta:
-    """Learn the potentials of every method from the scenes of the other folds."""
+    """Learn what every method needs from the scenes of the folds not held out."""
     input:
-        scenes=of_other_folds("results/{dataset}/scenes/fold{fold}"),
-        features=of_other_folds("results/{dataset}/features/fold{fold}"),
+        scenes=of_folds_left("results/{dataset}/scenes/fold{fold}"),
+        features=of_folds_left("results/{dataset}/features/fold{fold}"),
     output:
-        theta=directory("results/{dataset}/theta/fold{fold}"),
+        theta=directory("results/{dataset}/theta/{held_out}"),
     log:
-        "results/logs/learn_theta/{dataset}/fold{fold}.log",
+        "results/logs/learn_theta/{dataset}/{held_out}.log",
     benchmark:
-        "results/benchmarks/learn_theta/{dataset}/fold{fold}.tsv"
+        "results/benchmarks/learn_theta/{dataset}/{held_out}.tsv"
     params:
         code=digest("learn_theta"),
         seed=config["seed"],
-        settings=flags("sampling", "learning", "fitting", "baselines"),
+        n_components=config["tuning"]["n_components"],
+        settings=flags("sampling", "learning", "fitting", "baselines", "object_context"),
     shell:
         r"""
         python workflow/scripts/learn_theta.py \
             --dataset {wildcards.dataset:q} \
-            --fold {wildcards.fold:q} \
+            --held-out {wildcards.held_out:q} \
             --scenes {input.scenes:q} \
             --features {input.features:q} \
             --theta {output.theta:q} \
             --seed {params.seed:q} \
+            --n-components {params.n_components:q} \
             {params.settings:q} \
+            2>{log:q}
+        """
+
+
+rule tune_methods:
+    """Choose K and omega of a fold on its training scenes, and calibrate regions."""
+    input:
+        theta=of_pairs("results/{dataset}/theta/{held_out}"),
+        scenes=of_other_folds("results/{dataset}/scenes/fold{fold}"),
+        features=of_other_folds("results/{dataset}/features/fold{fold}"),
+    output:
+        tuning="results/{dataset}/tuning/fold{fold}.json",
+    log:
+        "results/logs/tune_methods/{dataset}/fold{fold}.log",
+    benchmark:
+        "results/benchmarks/tune_methods/{dataset}/fold{fold}.tsv"
+    params:
+        code=digest("tune_methods"),
+        seed=config["seed"],
+        settings=flags(*ANSWERING, within="settings."),
+        tuning=flags("tuning", "scoring"),
+    shell:
+        r"""
+        python workflow/scripts/tune_methods.py \
+            --dataset {wildcards.dataset:q} \
+            --fold {wildcards.fold:q} \
+            --theta {input.theta:q} \
+            --scenes {input.scenes:q} \
+            --features {input.features:q} \
+            --tuning-file {output.tuning:q} \
+            --seed {params.seed:q} \
+            {params.settings:q} \
+            {params.tuning:q} \
             2>{log:q}
         """
 
@@ -49,12 +92,17 @@ rule sample_arrangement:
     """Sample human poses in the scenes of a fold and arrange the objects by them."""
     input:
         theta="results/{dataset}/theta/fold{fold}",
+        tuning="results/{dataset}/tuning/fold{fold}.json",
         scenes="results/{dataset}/scenes/fold{fold}",
         features="results/{dataset}/features/fold{fold}",
     output:
         arrangements="results/{dataset}/arrangements/{task}/fold{fold}.parquet",
         poses="results/{dataset}/poses/{task}/fold{fold}.parquet",
+        likelihoods="results/{dataset}/likelihoods/{task}/fold{fold}.parquet",
         densities=directory("results/{dataset}/densities/{task}/fold{fold}"),
+        traces="results/{dataset}/traces/{task}/fold{fold}.parquet",
+        diagnoses="results/{dataset}/diagnostics/{task}/fold{fold}.parquet",
+        explanations="results/{dataset}/explanations/{task}/fold{fold}.parquet",
     log:
         "results/logs/sample_arrangement/{dataset}/{task}/fold{fold}.log",
     benchmark:
@@ -62,27 +110,27 @@ rule sample_arrangement:
     params:
         code=digest("sample_arrangement"),
         seed=config["seed"],
-        settings=flags(
-            "candidates",
-            "sampling",
-            "arranging",
-            "decision",
-            "baselines",
-            within="settings.",
-        ),
+        settings=flags(*ANSWERING, within="settings."),
+        diagnostics=flags("diagnostics", "scoring"),
     shell:
         r"""
         python workflow/scripts/sample_arrangement.py \
             --dataset {wildcards.dataset:q} \
             --task {wildcards.task:q} \
             --theta {input.theta:q} \
+            --tuning {input.tuning:q} \
             --scenes {input.scenes:q} \
             --features {input.features:q} \
             --arrangements {output.arrangements:q} \
+            --likelihoods {output.likelihoods:q} \
             --poses {output.poses:q} \
             --densities {output.densities:q} \
+            --traces {output.traces:q} \
+            --diagnoses {output.diagnoses:q} \
+            --explanations {output.explanations:q} \
             --seed {params.seed:q} \
             {params.settings:q} \
+            {params.diagnostics:q} \
             2>{log:q}
         """
 
@@ -91,9 +139,8 @@ rule score_arrangement:
     """Measure how far the arrangements of a fold are from the labelled ones."""
     input:
         scenes="results/{dataset}/scenes/fold{fold}",
-        features="results/{dataset}/features/fold{fold}",
         arrangements="results/{dataset}/arrangements/{task}/fold{fold}.parquet",
-        densities="results/{dataset}/densities/{task}/fold{fold}",
+        likelihoods="results/{dataset}/likelihoods/{task}/fold{fold}.parquet",
     output:
         scores="results/{dataset}/scores/{task}/fold{fold}.parquet",
     log:
@@ -102,20 +149,15 @@ rule score_arrangement:
         "results/benchmarks/score_arrangement/{dataset}/{task}/fold{fold}.tsv"
     params:
         code=digest("score_arrangement"),
-        spacing_m=config["candidates"]["spacing_m"],
-        scoring=flags("scoring"),
     shell:
         r"""
         python workflow/scripts/score_arrangement.py \
             --dataset {wildcards.dataset:q} \
             --task {wildcards.task:q} \
             --scenes {input.scenes:q} \
-            --features {input.features:q} \
             --arrangements {input.arrangements:q} \
-            --densities {input.densities:q} \
+            --likelihoods {input.likelihoods:q} \
             --scores {output.scores:q} \
-            --spacing-m {params.spacing_m:q} \
-            {params.scoring:q} \
             2>{log:q}
         """
 

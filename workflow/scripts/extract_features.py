@@ -8,9 +8,10 @@ from tqdm import tqdm
 from command import run
 from placing.artifacts.features import write_features
 from placing.artifacts.scenes import read_scene
-from placing.candidates import CandidatesConfig, find_candidates
+from placing.candidates import CandidatesConfig
 from placing.clouds.ply import read_ply
-from placing.human import PosesConfig, valid_poses
+from placing.places import find_candidates
+from placing.valid_poses import PosesConfig, valid_poses
 
 log = logging.getLogger(__name__)
 

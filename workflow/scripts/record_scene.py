@@ -1,21 +1,25 @@
 """Record every scene of a fold and task: the room, the sampled poses, the objects."""
 
 import logging
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import pandas as pd
 from tqdm import tqdm
 
 from command import run
-from placing.answer_tables import PLACEMENT_COLUMNS, POSE_COLUMNS
-from placing.answering import METHODS
+from placing.answer_tables import PLACEMENT_COLUMNS, POSE_COLUMNS, TRACE_COLUMNS
 from placing.artifacts.densities import read_densities
 from placing.artifacts.features import read_features
 from placing.artifacts.formats import read_table
 from placing.artifacts.scenes import read_scene
 from placing.clouds.ply import read_ply
+from placing.diagnostics import DIAGNOSTIC_COLUMNS
 from placing.errors import unknown
+from placing.explanation import EXPLANATION_COLUMNS
 from placing.metrics import SCORE_COLUMNS
 from placing.recordings.assembly import Job, scene_recording
+from placing.recordings.tables import Tables
 from placing.recordings.writer import write_recording
 
 log = logging.getLogger(__name__)
@@ -33,34 +37,47 @@ def main(
     poses: Path,
     densities: Path,
     scores: Path,
+    traces: Path,
+    diagnostics: Path,
+    explanations: Path,
     recordings: Path,
     seed: int,
 ) -> None:
     """Record every scene of a fold and task."""
-    if method not in METHODS:
-        raise unknown("method", method, list(METHODS))
+    methods = sorted(read_table(arrangements, ["method"])["method"].unique())
+    if method not in methods:
+        raise unknown(f"method of {arrangements}", method, methods)
     job = Job(dataset, task, method, fold, seed)
-    tables = [
-        read_table(arrangements, PLACEMENT_COLUMNS),
-        read_table(poses, POSE_COLUMNS),
-        read_table(scores, SCORE_COLUMNS),
-    ]
+    read = {
+        "answers": _of_scenes(arrangements, PLACEMENT_COLUMNS, method),
+        "poses": _of_scenes(poses, POSE_COLUMNS, method),
+        "scores": _of_scenes(scores, SCORE_COLUMNS, method),
+        "traces": _of_scenes(traces, TRACE_COLUMNS, method),
+        "diagnoses": _of_scenes(diagnostics, DIAGNOSTIC_COLUMNS, method),
+        "explanations": _of_scenes(explanations, EXPLANATION_COLUMNS, method),
+    }
     for path in tqdm(sorted(scenes.glob("*.json")), unit="scene", disable=None):
         scene = read_scene(path)
-        answers, sampled, scored = (t[t["scene"] == scene.scene] for t in tables)
         content = scene_recording(
             job,
             scene,
             read_ply(clouds / f"{scene.scene}.ply"),
             *read_features(features / f"{scene.scene}.npz"),
-            answers,
-            sampled[sampled["method"] == method],
             read_densities(densities / f"{scene.scene}.npz"),
-            scored,
+            Tables(**{name: of(scene.scene) for name, of in read.items()}),
         )
         recordings.mkdir(parents=True, exist_ok=True)
         write_recording(recordings / f"{scene.scene}.rrd", content)
     log.info("%s fold %d %s: recorded", dataset, fold, task)
+
+
+def _of_scenes(
+    path: Path, columns: Sequence[str], method: str
+) -> Callable[[str], pd.DataFrame]:
+    """Return the function from a scene to its rows of a table, of one method."""
+    table = read_table(path, columns)
+    rows = dict(iter(table[table["method"] == method].groupby("scene")))
+    return lambda scene: rows.get(scene, table.iloc[:0])
 
 
 if __name__ == "__main__":

@@ -1,26 +1,24 @@
 """Arrange the objects of every scene of a fold with every method of a task."""
 
 import logging
+from functools import partial
 from pathlib import Path
 
-import pandas as pd
+from numpy.random import Generator
 from tqdm import tqdm
 
 from command import run
-from placing.answer_tables import (
-    PLACEMENT_COLUMNS,
-    POSE_COLUMNS,
-    placement_rows,
-    pose_rows,
-)
-from placing.answering import METHODS, answer
+from placing.answer_sheets import Sheets
+from placing.answering import Asked
 from placing.artifacts.densities import write_densities
 from placing.artifacts.features import read_features
 from placing.artifacts.formats import write_table
 from placing.artifacts.scenes import read_scene
 from placing.artifacts.theta import read_learned
+from placing.artifacts.tuning import read_tuning
+from placing.diagnostics import DiagnosticsConfig
+from placing.likelihoods import ScoringConfig
 from placing.scene_model import SceneModel, Settings
-from placing.scoring import density_key
 from placing.seeds import generator
 from placing.tasks import questions
 
@@ -30,39 +28,68 @@ log = logging.getLogger(__name__)
 def main(
     dataset: str,
     task: str,
+    theta: Path,
+    tuning: Path,
     scenes: Path,
     features: Path,
-    theta: Path,
     arrangements: Path,
+    likelihoods: Path,
     poses: Path,
     densities: Path,
+    traces: Path,
+    diagnoses: Path,
+    explanations: Path,
     seed: int,
     settings: Settings,
+    diagnostics: DiagnosticsConfig,
+    scoring: ScoringConfig,
 ) -> None:
-    """Arrange the objects of every scene of a fold with every method of a task."""
+    """Arrange the objects of every scene of a fold with every method of a task.
+
+    Args:
+        dataset: Data set of the scenes.
+        task: filled or empty.
+        theta: Directory of what was learned without the fold.
+        tuning: What the training scenes chose.
+        scenes: Directory of the scenes of the fold.
+        features: Directory of their features.
+        arrangements: Table to write: where every method puts every object.
+        likelihoods: Table to write: how likely it finds the labelled places.
+        poses: Table to write: the human poses sampled by `dp`, first chain.
+        densities: Directory to write: the densities of `dp` and `dp_object`.
+        traces: Table to write: every sweep of every chain of `dp`.
+        diagnoses: Table to write: whether the chains of a question agree.
+        explanations: Table to write: why `dp` and `dp_object` chose a place.
+        seed: Root of all random streams.
+        settings: Sections of the configuration that answering looks at.
+        diagnostics: Gates of the diagnostics.
+        scoring: How densities are scored.
+    """
     learned = read_learned(theta)
-    placed, sampled = [], []
+    choices, ranks = read_tuning(tuning, task)
+    sheets = Sheets(scoring, diagnostics, ranks[task])
     for path in tqdm(sorted(scenes.glob("*.json")), unit="scene", disable=None):
         scene = read_scene(path)
         candidates, valid = read_features(features / f"{scene.scene}.npz")
         model = SceneModel(scene, candidates, valid, learned, settings)
-        of_scene = {}
+        kept = {}
         for question in questions(scene, task):
-            for method in METHODS:
-                names = (dataset, scene.scene, task, method, question.name)
-                rng = generator(seed, "sample_arrangement", *names)
-                given = answer(rng, model, question, method)
-                row = (scene.scene, task, method, question)
-                placed += placement_rows(*row, given)
-                if given.chains is not None:
-                    sampled.append(pose_rows(*row, given.chains, valid))
-                for category, density in given.densities.items():
-                    key = density_key(method, question.name, category)
-                    of_scene[key] = density
-        write_densities(densities / f"{scene.scene}.npz", of_scene)
-    write_table(arrangements, pd.DataFrame(placed, columns=PLACEMENT_COLUMNS))
-    write_table(poses, pd.concat(sampled or [pd.DataFrame(columns=POSE_COLUMNS)]))
-    log.info("%s %s: %d objects placed", dataset, task, len(placed))
+            names = (dataset, scene.scene, task)
+            stream = partial(named, seed, names, question.name)
+            kept |= sheets.fill(task, Asked(stream, model, question, choices))
+        write_densities(densities / f"{scene.scene}.npz", kept)
+    write_table(arrangements, sheets.table("arrangements"))
+    write_table(likelihoods, sheets.table("likelihoods"))
+    write_table(poses, sheets.table("poses"))
+    write_table(traces, sheets.table("traces"))
+    write_table(diagnoses, sheets.table("diagnoses"))
+    write_table(explanations, sheets.table("explanations"))
+    log.info("%s %s: %d objects placed", dataset, task, sheets.n_placed())
+
+
+def named(seed: int, names: tuple[str, ...], question: str, method: str) -> Generator:
+    """Return the stream of a method that answers a question."""
+    return generator(seed, "sample_arrangement", *names, method, question)
 
 
 if __name__ == "__main__":

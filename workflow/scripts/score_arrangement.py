@@ -6,12 +6,11 @@ from pathlib import Path
 import pandas as pd
 
 from command import run
-from placing.answer_tables import PLACEMENT_COLUMNS
-from placing.artifacts.densities import read_densities
-from placing.artifacts.features import read_features
 from placing.artifacts.formats import read_table, write_table
 from placing.artifacts.scenes import read_scene
-from placing.scoring import ScoringConfig, score_scene
+from placing.likelihoods import LIKELIHOOD_COLUMNS
+from placing.metrics import SCORE_COLUMNS
+from placing.scoring import ANSWER_COLUMNS, score_scene
 
 log = logging.getLogger(__name__)
 
@@ -20,25 +19,29 @@ def main(
     dataset: str,
     task: str,
     scenes: Path,
-    features: Path,
     arrangements: Path,
-    densities: Path,
+    likelihoods: Path,
     scores: Path,
-    spacing_m: float,
-    scoring: ScoringConfig,
 ) -> None:
-    """Compare the arrangements of a fold and task with the labelled ones."""
-    answers = read_table(arrangements, PLACEMENT_COLUMNS)
+    """Compare the arrangements of a fold and task with the labelled ones.
+
+    Args:
+        dataset: Data set of the scenes.
+        task: filled or empty.
+        scenes: Directory of the scenes of the fold.
+        arrangements: Where every method puts every object.
+        likelihoods: How likely every method finds the labelled places.
+        scores: Table to write.
+    """
+    answers = read_table(arrangements, ANSWER_COLUMNS)
+    likely = read_table(likelihoods, LIKELIHOOD_COLUMNS)
     tables = []
     for path in sorted(scenes.glob("*.json")):
         scene = read_scene(path)
-        candidates, _ = read_features(features / f"{scene.scene}.npz")
-        of_scene = answers[answers["scene"] == scene.scene]
-        density = read_densities(densities / f"{scene.scene}.npz")
-        args = (scene, of_scene, density, candidates, spacing_m, scoring)
-        tables.append(score_scene(*args))
-    table = pd.concat(tables, ignore_index=True)
-    write_table(scores, table.assign(dataset=dataset, task=task))
+        of_scene = (table[table["scene"] == scene.scene] for table in (answers, likely))
+        tables.append(score_scene(scene, *of_scene))
+    table = pd.concat(tables, ignore_index=True).assign(dataset=dataset, task=task)
+    write_table(scores, table[list(SCORE_COLUMNS)])
     log.info("%s %s: %d scores", dataset, task, len(table))
 
 

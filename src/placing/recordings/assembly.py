@@ -12,10 +12,11 @@ from placing.answer_tables import LOCATION, ORIENTATION, PLACED
 from placing.candidates import Candidates
 from placing.clouds.ply import Cloud
 from placing.human import HumanPoses
+from placing.likelihoods import density_key
 from placing.metrics import errors
-from placing.recordings.content import Boxes, SceneRecording
+from placing.recordings.content import Boxes, SceneRecording, Term, Use
+from placing.recordings.tables import Tables
 from placing.scene import Placement, Scene, SceneObject
-from placing.scoring import density_key
 
 Array = NDArray[np.float64]
 
@@ -37,35 +38,38 @@ def scene_recording(
     cloud: Cloud,
     candidates: Candidates,
     valid: HumanPoses,
-    answers: pd.DataFrame,
-    poses: pd.DataFrame,
     densities: Mapping[str, Array],
-    scores: pd.DataFrame,
+    tables: Tables,
 ) -> SceneRecording:
     """Return the recording of one scene, task and method.
 
     A filled room is shown with the objects of its first labelled arrangement, each
     category taken out in turn.
     """
-    labels, method = scene.arrangements[0].name, job.method
-    is_shown = answers["labels"].isin(["", labels]) & (answers["method"] == method)
+    labels, answers = scene.arrangements[0].name, tables.answers
+    is_shown = answers["labels"].isin(["", labels])
     shown = answers[is_shown & (answers["status"] == PLACED)].sort_values("object")
     items = {item.object_id: item for item in scene.objects}
     targets = {p.object_id: p for p in scene.arrangements[0].placements}
     matched = _matched(shown, targets)
-    of_method = scores[(scores["method"] == method) & (scores["labels"] == labels)]
-    of_object = of_method.set_index("object").loc[matched]
-    chain = _shown_chain(poses, shown, items)
+    scores = tables.scores.set_index("object")
+    of_object = scores[scores["labels"] == labels].loc[matched]
+    question = _shown_question(shown, items)
+    asked = answers.loc[is_shown, "question"].unique()
+    explained = tables.explanations["question"].isin(asked)
     return SceneRecording(
         **vars(job),
         scene=scene.scene,
-        points=cloud.points.astype(float),
+        points=cloud.points,
         point_colors=cloud.colors,
-        point_normals=cloud.normals.astype(float),
+        point_normals=cloud.normals,
         areas=scene.areas,
         valid_poses=_pose_table(valid),
-        sampled_poses=chain.rename(columns={"sample": "sweep"}),
-        trace=_trace(chain),
+        sampled_poses=_of(tables.poses, question).rename(columns={"sample": "sweep"}),
+        question=question,
+        trace=_of(tables.traces, question),
+        diagnoses=tables.diagnoses[tables.diagnoses["question"].isin(asked)],
+        uses=_uses(tables.explanations[explained]),
         given=_boxes(items, targets if job.task == "filled" else {}),
         predicted=_predicted(items, shown),
         labelled=_boxes(items, {name: targets[name] for name in matched}),
@@ -77,35 +81,55 @@ def scene_recording(
 
 def _matched(shown: pd.DataFrame, targets: Mapping[str, Placement]) -> list[str]:
     """Return the labelled object that each predicted one is scored by, in order."""
-    matched = pd.Series("", index=shown.index)
-    for _, of_category in shown.groupby("category"):
-        names = [name for name in of_category["object"] if name in targets]
-        to = np.array([targets[name].location for name in names])
-        match, _ = errors(of_category[LOCATION].to_numpy(float), to)
-        matched[of_category.index[match]] = names
+    objects, location = shown["object"].tolist(), shown[LOCATION].to_numpy(float)
+    matched = np.array(objects, object)
+    for rows in shown.groupby("category").indices.values():
+        names = [objects[row] for row in rows]
+        if len(names) > 1:
+            to = np.array([targets[name].location for name in names])
+            match, _ = errors(location[rows], to)
+            matched[rows[match]] = names
     return matched.tolist()
 
 
-def _shown_chain(
-    poses: pd.DataFrame, shown: pd.DataFrame, items: Mapping[str, SceneObject]
-) -> pd.DataFrame:
-    """Return the chain of one question: in a filled room that of one category.
+def _shown_question(shown: pd.DataFrame, items: Mapping[str, SceneObject]) -> str:
+    """Return the question whose people are shown: in a filled room that of a category.
 
     It is the first category with a front, whose use by people is easiest to see.
     """
-    names = sorted(shown["object"], key=lambda o: (not items[o].has_front, o))
-    of_first = shown[shown["object"] == names[0]] if names else shown
-    return poses[poses["question"].isin(of_first["question"])]
+    if shown.empty:
+        return ""
+    of_object = dict(zip(shown["object"], shown["question"], strict=True))
+    return of_object[min(of_object, key=lambda o: (not items[o].has_front, o))]
 
 
-def _trace(chain: pd.DataFrame) -> pd.DataFrame:
-    """Return the log joint and the number of poses in use per sweep."""
-    by_sweep = chain.groupby("sample")
-    columns = {
-        "log_likelihood": by_sweep["log_joint"].first(),
-        "n_poses": by_sweep.size(),
-    }
-    return pd.DataFrame(columns).rename_axis("sweep").reset_index()
+def _of(table: pd.DataFrame, question: str) -> pd.DataFrame:
+    """Return the rows of one question."""
+    return table[table["question"] == question]
+
+
+def _uses(table: pd.DataFrame) -> dict[str, Use]:
+    """Return who uses each object, from one row per object and term."""
+    columns = table.to_dict("list")
+    names = ("term", "value", "alternative_value", "is_decisive")
+    terms = list(zip(*[columns[name] for name in names], strict=True))
+    rows_of: dict[str, list[int]] = {}
+    for row, name in enumerate(columns["object"]):
+        rows_of.setdefault(name, []).append(row)
+
+    def use(rows: list[int]) -> Use:
+        row = {name: values[rows[0]] for name, values in columns.items()}
+        return Use(
+            kind=row["person_kind"] if isinstance(row["person_kind"], str) else "",
+            location=np.array([row[f"person_{axis}_m"] for axis in "xyz"], float),
+            yaw=row["person_yaw_rad"],
+            share=row["person_share"],
+            area=row["alternative_area"],
+            alternative=np.array([row[f"alternative_{axis}_m"] for axis in "xyz"]),
+            terms=tuple(Term(*terms[k]) for k in rows),
+        )
+
+    return {name: use(rows) for name, rows in rows_of.items()}
 
 
 def _pose_table(valid: HumanPoses) -> pd.DataFrame:
@@ -149,6 +173,6 @@ def _densities(
     keys = shown[["method", "question", "category"]].drop_duplicates()
     for method, question, category in keys.itertuples(index=False):
         density = densities[density_key(method, question, category)]
-        fits = density > 0
+        fits = np.flatnonzero(density)
         found[category] = candidates.location[fits], np.log(density[fits])
     return found

@@ -1,5 +1,6 @@
 """What is seen when a recording is opened: views, eye, and which walls are cut away."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,6 +8,7 @@ import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
 from placing.recordings.content import SceneRecording
+from placing.recordings.tables import TRACED
 
 Array = NDArray[np.float64]
 
@@ -22,6 +24,8 @@ SEEN_HEIGHT_M = 1.6
 FRONT_DEPTH_M, FRONT_BIN_M, FRONT_LIP_M = 0.2, 0.1, 0.1
 """How deep a wall towards the eye is cut away, in strips so wide, down to a lip."""
 BACKGROUND = (38, 41, 47)
+N_USES = 3
+"""Of so many objects, the largest, the user is seen from the start."""
 
 
 @dataclass(frozen=True)
@@ -34,9 +38,9 @@ class Eye:
     """(3,) [m]."""
 
 
-def eye_of_room(points: Array, objects: Array) -> Eye:
+def eye_of_room(points: NDArray[np.floating], objects: Array) -> Eye:
     """Return an eye above a corner of the room that faces most of the objects."""
-    low, high = points.min(axis=0), points.max(axis=0)
+    low, high = (np.array([f(c) for c in points.T], float) for f in (np.min, np.max))
     high[2] = low[2] + SEEN_HEIGHT_M
     target = (low + high) / 2
     seen = objects.mean(axis=0) if len(objects) else target
@@ -77,13 +81,50 @@ def is_in_front(points: Array, eye: Eye) -> NDArray[np.bool_]:
 
 
 def layout(content: SceneRecording, eye: Eye) -> rrb.Blueprint:
-    """Return the views: the room beside the summary and the chain's diagnostics."""
-    others = [f"world/density/{name}" for name in list(content.densities)[1:]]
-    hidden = rrb.EntityBehavior(visible=False)
-    room = rrb.Spatial3DView(
+    """Return the views: the room beside the words and the traces of the chains."""
+    words = rrb.Tabs(
+        rrb.TextDocumentView(origin="summary", name="Summary"),
+        rrb.TextDocumentView(origin="reasons", name="Why here"),
+        active_tab=0,
+    )
+    traces = [
+        rrb.TimeSeriesView(
+            origin=f"diagnostics/{name}",
+            name=label.capitalize(),
+            plot_legend=rrb.PlotLegend(visible=False),  # chains are alike
+        )
+        for name, label in TRACED.items()
+    ]
+    side = rrb.Vertical(words, *traces, row_shares=[6, *[1] * len(traces)])
+    return views(
+        rrb.Horizontal(room(eye, hidden(content)), side, column_shares=[3, 1.3])
+    )
+
+
+def hidden(content: SceneRecording) -> list[str]:
+    """Return the entities that are switched off at first: a view of all is too full."""
+    volume = content.predicted.sizes.prod(axis=1)
+    by_size = np.array(content.predicted.names)[np.argsort(-volume, kind="stable")]
+    return [
+        "world/cloud/front",
+        *(f"world/density/{name}" for name in list(content.densities)[1:]),
+        *(f"world/uses/{name}" for name in by_size[N_USES:]),
+    ]
+
+
+def room(
+    eye: Eye,
+    off: Sequence[str],
+    name: str = "Room",
+    contents: Sequence[str] = ("$origin/**",),
+) -> rrb.Spatial3DView:
+    """Return a view of the room with some entities switched off."""
+    behaviour = rrb.EntityBehavior(visible=False)
+    return rrb.Spatial3DView(
         origin="world",
-        name="Room",
-        overrides={path: hidden for path in ("world/cloud/front", *others)},
+        name=name,
+        contents=list(contents),
+        overrides=dict.fromkeys(off, behaviour),
         eye_controls=rrb.EyeControls3D(
             kind=rrb.Eye3DKind.Orbital,
             position=eye.position,
@@ -93,14 +134,12 @@ def layout(content: SceneRecording, eye: Eye) -> rrb.Blueprint:
         background=BACKGROUND,
         line_grid=False,
     )
-    side = rrb.Vertical(
-        rrb.TextDocumentView(origin="summary", name="Summary"),
-        rrb.TimeSeriesView(origin="diagnostics/log_likelihood", name="Log likelihood"),
-        rrb.TimeSeriesView(origin="diagnostics/n_poses", name="Poses in use"),
-        row_shares=[4, 1, 1],
-    )
+
+
+def views(container: rrb.Container) -> rrb.Blueprint:
+    """Return a blueprint of these views alone, without the panels around them."""
     return rrb.Blueprint(
-        rrb.Horizontal(room, side, column_shares=[3, 1.3]),
+        container,
         rrb.TimePanel(state="collapsed", timeline="sweep", play_state="following"),
         rrb.SelectionPanel(state="hidden"),
         rrb.BlueprintPanel(state="hidden"),

@@ -1,4 +1,4 @@
-"""What the recording of a scene holds, and its summary in words; nothing of rerun."""
+"""What the recording of a scene holds; nothing of rerun."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,21 +10,6 @@ from numpy.typing import NDArray
 from placing.scene import PlacingArea
 
 Array = NDArray[np.float64]
-
-ABOUT = {
-    "rooms": "20 rooms and their labelled arrangements, written for this project after "
-    "the protocol of the paper. It is not the data set of the paper, whose numbers it "
-    "cannot reproduce digit by digit.",
-    "thor": "Rooms drawn by the designers of AI2-THOR for other purposes, with their "
-    "own choice of where things lie. It is not the data set of the paper, and nobody "
-    "labelled it for this task.",
-}
-LEGEND = (
-    "Orange boxes: predicted places, linked to the labelled ones in white outline. "
-    "Grey boxes: given objects. Figures: the people imagined at this sweep, with the "
-    "number of objects each explains. Coloured points: the density of one category; "
-    "the others can be switched on under `world/density`."
-)
 
 
 @dataclass(frozen=True)
@@ -54,6 +39,33 @@ class Mesh:
 
 
 @dataclass(frozen=True)
+class Term:
+    """What speaks for a place, as a logarithm, here and at the other place."""
+
+    name: str
+    value: float
+    alternative: float
+    is_decisive: bool
+
+
+@dataclass(frozen=True)
+class Use:
+    """Who uses an object most likely, and where it would be otherwise."""
+
+    kind: str
+    """Kind of person; empty where there is nobody."""
+    location: Array
+    """(3,) of the person."""
+    yaw: float
+    share: float
+    """Probability of this person."""
+    area: str
+    alternative: Array
+    """(3,) best other place, on `area`; NaN where there is none."""
+    terms: tuple[Term, ...]
+
+
+@dataclass(frozen=True)
 class SceneRecording:
     """All that one recording shows: one scene, one task, one method."""
 
@@ -63,19 +75,25 @@ class SceneRecording:
     method: str
     fold: int
     seed: int
-    points: Array
+    points: NDArray[np.floating]
     """(n, 3) point cloud of the room [m]."""
     point_colors: NDArray[np.uint8]
     """(n, 3)."""
-    point_normals: Array
+    point_normals: NDArray[np.floating]
     """(n, 3) unit, or (0, 3) where they are unknown; they only shade the cloud."""
     areas: tuple[PlacingArea, ...]
     valid_poses: pd.DataFrame
     """kind, x_m, y_m, z_m, yaw_rad: where a person could be."""
     sampled_poses: pd.DataFrame
     """sweep, pose, kind, x_m, y_m, z_m, yaw_rad, n_objects: where the chain was."""
+    question: str
+    """The question whose chains are shown; empty where there are none."""
     trace: pd.DataFrame
-    """sweep, log_likelihood, n_poses."""
+    """chain, sweep, log_joint, n_poses, p_new of that question."""
+    diagnoses: pd.DataFrame
+    """`DIAGNOSTIC_COLUMNS` of every question that is shown."""
+    uses: Mapping[str, Use]
+    """By predicted object, none of a method without people."""
     given: Boxes
     """Objects that stand in the room from the start; none in an empty room."""
     predicted: Boxes
@@ -88,28 +106,3 @@ class SceneRecording:
     densities: Mapping[str, tuple[Array, Array]] = field(default_factory=dict)
     """Of each category: candidate points (c, 3) [m] and their log density (c,)."""
     meshes: tuple[Mesh, ...] = ()
-
-
-def summary(content: SceneRecording) -> str:
-    """Return what the recording shows as Markdown."""
-    given = len(content.given.names)
-    lines = [
-        f"# {content.scene}, {content.task} room",
-        f"Method **{content.method}**, fold {content.fold}, seed {content.seed}; "
-        f"{len(content.predicted.names)} objects placed, {given} given, "
-        f"mean error **{_mean(content.errors_m)} m**.",
-        "",
-        f"Data set `{content.dataset}`. {ABOUT.get(content.dataset, '')}",
-        "",
-        "| object | error [m] | log density |",
-        "|:-|-:|-:|",
-    ]
-    for i in np.argsort(content.errors_m, kind="stable"):
-        name, error = content.predicted.names[i], content.errors_m[i]
-        lines.append(f"| {name} | {error:.2f} | {content.log_density[i]:.1f} |")
-    return "\n".join([*lines, "", LEGEND])
-
-
-def _mean(values: Array) -> str:
-    """Return the mean with two decimals, or a dash where there is none."""
-    return f"{values.mean():.2f}" if len(values) else "-"

@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from rerun.components import FillMode, InterpolationMode, PointShading
 
 from placing.recordings.blueprint import Eye, is_in_front
-from placing.recordings.content import Boxes, Mesh, SceneRecording, summary
-from placing.recordings.pose_entities import KIND_COLORS
+from placing.recordings.content import Boxes, Mesh, SceneRecording
+from placing.recordings.strips import strips
 from placing.recordings.thinning import thin, voxel_means
+from placing.recordings.words import reasons, summary
 
 Array = NDArray[np.float64]
 
@@ -27,6 +28,15 @@ CLOUD_FILL = 0.7
 LIGHT = (0.35, 0.25, 0.9)
 AMBIENT = 0.62
 """A cloud is shaded as if lit from above; `AMBIENT` is the share without direction."""
+CHAINS = tuple(
+    (*colour,) for colour in (np.array(mpl.color_sequences["tab10"]) * 255).astype(int)
+)
+"""Colours of the chains."""
+MODES = {
+    "n_poses": InterpolationMode.StepAfter,
+    "log_joint": InterpolationMode.Linear,
+    "p_new": InterpolationMode.Linear,
+}
 READABLE_M = 0.5
 """Errors below this are only in the summary: their labels would hide the objects."""
 COLD = 0.02
@@ -56,9 +66,8 @@ def log_room(stream: rr.RecordingStream, content: SceneRecording, eye: Eye) -> N
         if not area.is_floor
         for polygon in [np.concatenate([area.polygon_m, area.polygon_m[:1]])]
     ]
-    stream.log(
-        "world/areas", rr.LineStrips3D(outlines, colors=AREA, radii=0.006), static=True
-    )
+    lines = rr.LineStrips3D(strips(outlines), colors=AREA, radii=0.006)
+    stream.log("world/areas", lines, static=True)
 
 
 def log_objects(stream: rr.RecordingStream, content: SceneRecording) -> None:
@@ -92,34 +101,39 @@ def log_densities(
 
 
 def log_diagnostics(stream: rr.RecordingStream, content: SceneRecording) -> None:
-    """Log the chain's diagnostics as series and the summary as text."""
-    time = [rr.TimeColumn("sweep", sequence=content.trace["sweep"].to_numpy())]
-    series = {
-        "log_likelihood": (
-            "log likelihood",
-            "sitting_upright",
-            InterpolationMode.Linear,
-        ),
-        "n_poses": ("poses in use", "reaching", InterpolationMode.StepAfter),
-    }
-    for column, (name, kind, mode) in series.items():
-        path, color = f"diagnostics/{column}", KIND_COLORS[kind]
+    """Log the trace of every chain as series, and what there is to read."""
+    n_chains = content.trace["chain"].nunique()
+    trace = content.trace.sort_values(["sweep", "chain"])
+    sweeps, counts = np.unique(trace["sweep"].to_numpy(), return_counts=True)
+    time = [rr.TimeColumn("sweep", sequence=sweeps)]
+    for name, mode in MODES.items():
+        path = f"diagnostics/{name}"
         style = rr.SeriesLines(
-            names=name, colors=color, widths=1.5, interpolation_mode=mode
+            names=[f"chain {chain + 1}" for chain in range(n_chains)],
+            colors=CHAINS[:n_chains],
+            widths=[1.2] * n_chains,
+            interpolation_mode=mode,
         )
-        scalars = content.trace[column].to_numpy(float)
         stream.log(path, style, static=True)
-        stream.send_columns(path, time, rr.Scalars.columns(scalars=scalars))
-    text = rr.TextDocument(summary(content), media_type=rr.MediaType.MARKDOWN)
-    stream.log("summary", text, static=True)
+        series = rr.Scalars.columns(scalars=trace[name].to_numpy(float))
+        stream.send_columns(path, time, series.partition(counts))
+    for path, text in {
+        "summary": summary(content),
+        "reasons": reasons(content),
+    }.items():
+        document = rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN)
+        stream.log(path, document, static=True)
 
 
-def shaded(content: SceneRecording) -> Array:
+def shaded(content: SceneRecording) -> NDArray[np.floating]:
     """Return the colours of the cloud, darker where it faces away from the light."""
     if not len(content.point_normals):
-        return content.point_colors.astype(float)
-    lit = np.abs(content.point_normals @ (np.array(LIGHT) / np.linalg.norm(LIGHT)))
-    return content.point_colors * (AMBIENT + (1 - AMBIENT) * lit[:, None])
+        return content.point_colors.astype(np.float32)
+    light = (np.array(LIGHT) / np.linalg.norm(LIGHT)).astype(
+        content.point_normals.dtype
+    )
+    lit = AMBIENT + (1 - AMBIENT) * np.abs(content.point_normals @ light)
+    return content.point_colors * lit[:, None]
 
 
 def boxes(
@@ -139,8 +153,9 @@ def boxes(
 
 def links(content: SceneRecording) -> rr.LineStrips3D:
     """Return a line from each predicted to its labelled place, with the error."""
+    ends = np.stack([content.predicted.centers, content.labelled.centers], axis=1)
     return rr.LineStrips3D(
-        list(zip(content.predicted.centers, content.labelled.centers, strict=True)),
+        strips(ends),
         labels=[f"{e:.2f} m" if e > READABLE_M else "" for e in content.errors_m],
         colors=LABELLED,
         radii=0.004,

@@ -6,10 +6,12 @@ how large files get.
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 import rerun as rr
 from numpy.typing import NDArray
 
 from placing import skeleton
+from placing.recordings.strips import packed
 from placing.recordings.thinning import evenly, thin
 
 Array = NDArray[np.float64]
@@ -68,10 +70,10 @@ def log_valid_poses(stream: rr.RecordingStream, valid: pd.DataFrame) -> None:
 
 def log_people(stream: rr.RecordingStream, poses: pd.DataFrame) -> None:
     """Log the chain's poses as figures over sweeps, named after kind and objects."""
-    poses = poses.sort_values(["sweep", "pose"])
     sweeps = evenly(np.unique(poses["sweep"].to_numpy()), SWEEPS)
-    poses = poses.loc[poses["sweep"].isin(list(sweeps))]
-    counts = poses.groupby("sweep").size().to_numpy()
+    poses = poses[np.isin(poses["sweep"].to_numpy(), sweeps)]
+    poses = poses.sort_values(["sweep", "pose"])
+    counts = np.unique(poses["sweep"].to_numpy(), return_counts=True)[1]
     time = [rr.TimeColumn("sweep", sequence=sweeps)]
     ids, joints = class_ids(poses), skeletons(poses)  # (k,), (k, 15, 3)
     plain = rr.LineStrips3D.from_fields(show_labels=False)
@@ -99,10 +101,18 @@ def points_of_joints(ids: NDArray[np.uint16], joints: Array) -> rr.ComponentColu
 def lines_of_limbs(ids: NDArray[np.uint16], joints: Array) -> rr.ComponentColumnList:
     """Return the limbs of people as thick lines."""
     return rr.LineStrips3D.columns(
-        strips=[figure[list(line)] for figure in joints for line in FIGURE],
+        strips=limbs(joints),
         class_ids=np.repeat(ids, len(FIGURE)),
         radii=np.full(len(FIGURE) * len(ids), LIMB_RADIUS_M),
     )
+
+
+def limbs(joints: Array) -> pa.ListArray:
+    """Return the lines of figures (k, 15, 3), one after the other."""
+    through = np.concatenate(FIGURE)
+    points = joints[:, through].reshape(-1, 3)
+    ends = np.cumsum([0, *[len(line) for line in FIGURE] * len(joints)])
+    return packed(points, ends)
 
 
 def names_over_heads(
@@ -122,14 +132,13 @@ def names_over_heads(
 
 def skeletons(poses: pd.DataFrame) -> Array:
     """Return the joints of poses of any kind in the world, shape (k, 15, 3) [m]."""
-    joints = np.empty((len(poses), 15, 3))
-    for kind, rows in poses.groupby("kind").indices.items():
-        part = poses.iloc[rows]
-        location = part[["x_m", "y_m", "z_m"]].to_numpy()
-        joints[rows] = skeleton.place(str(kind), location, part["yaw_rad"].to_numpy())
-    return joints
+    upright = np.stack([skeleton.joints(kind) for kind in skeleton.KINDS])
+    x, y, z = np.moveaxis(upright[class_ids(poses)], -1, 0)  # (k, 15) each
+    yaw = poses["yaw_rad"].to_numpy()[:, None]
+    turned = [np.cos(yaw) * x - np.sin(yaw) * y, np.sin(yaw) * x + np.cos(yaw) * y, z]
+    return np.stack(turned, -1) + poses[["x_m", "y_m", "z_m"]].to_numpy()[:, None]
 
 
 def class_ids(poses: pd.DataFrame) -> NDArray[np.uint16]:
     """Return the class of each pose's kind, shape (k,)."""
-    return poses["kind"].map(skeleton.KINDS.index).to_numpy(np.uint16)
+    return np.array([skeleton.KINDS.index(kind) for kind in poses["kind"]], np.uint16)

@@ -12,7 +12,7 @@ import rerun as rr
 from rerun.chunk import RrdReader
 
 from placing.artifacts.atomic import replacing
-from placing.recordings import blueprint, entities, pose_entities
+from placing.recordings import blueprint, entities, pose_entities, use_entities
 from placing.recordings.content import SceneRecording
 
 
@@ -43,6 +43,7 @@ def _log(stream: rr.RecordingStream, content: SceneRecording) -> None:
     pose_entities.log_valid_poses(stream, content.valid_poses)
     pose_entities.log_people(stream, content.sampled_poses)
     entities.log_objects(stream, content)
+    use_entities.log_uses(stream, content)
     entities.log_densities(stream, content.densities)
     entities.log_diagnostics(stream, content)
     stream.send_blueprint(
