@@ -15,9 +15,9 @@ from placing.answer_tables import (
     trace_rows,
 )
 from placing.answering import METHODS, Answer, Asked
-from placing.diagnostics import DIAGNOSTIC_COLUMNS, DiagnosticsConfig, diagnosis_row
+from placing.diagnostics import DIAGNOSTIC_COLUMNS, diagnosis_row
 from placing.explanation import EXPLANATION_COLUMNS
-from placing.inspecting import diagnosis_of, reasons_of, region_areas_of
+from placing.inspecting import reasons_of, region_areas_of
 from placing.likelihoods import (
     LIKELIHOOD_COLUMNS,
     ScoringConfig,
@@ -46,14 +46,9 @@ COLUMNS = {
 class Sheets:
     """The tables of a task, filled question by question."""
 
-    def __init__(
-        self,
-        scoring: ScoringConfig,
-        diagnostics: DiagnosticsConfig,
-        ranks: Mapping[str, Array],
-    ) -> None:
+    def __init__(self, scoring: ScoringConfig, ranks: Mapping[str, Array]) -> None:
         """Start empty; `ranks` per method calibrate its regions."""
-        self._scoring, self._diagnostics, self._ranks = scoring, diagnostics, ranks
+        self._scoring, self._ranks = scoring, ranks
         self._rows: dict[str, list[tuple[object, ...]]] = {n: [] for n in COLUMNS}
         self._tables: dict[str, list[pd.DataFrame]] = {"poses": [], "traces": []}
 
@@ -92,13 +87,14 @@ class Sheets:
         key = scene, task, method, question.name
         likely = [(*key, *row) for row in likelihood_rows(*found, self._scoring)]
         self._rows["likelihoods"] += likely
-        diagnosis = diagnosis_of(asked, answer)
-        if diagnosis is None or answer.people is None:
+        people = answer.people
+        if people is None or people.diagnosis is None:
             return
         n_objects = len(question.given) + len(question.wanted)
-        row = diagnosis_row(key, n_objects, diagnosis, self._diagnostics)
+        gates = asked.model.settings.diagnostics
+        row = diagnosis_row(key, n_objects, people.diagnosis, gates)
         self._rows["diagnoses"].append(row)
-        chains = answer.people.chains
+        chains = people.chains
         if method == RECORDED and chains is not None:
             poses = asked.model.poses
             self._tables["poses"].append(pose_rows(*args, chains, poses))

@@ -167,7 +167,8 @@ class Asked:
             return model.baseline(name, category)
         if method == "random_human":
             return model.random_density(category)
-        density = model.use(people.theta, category).density(people.weight[category])
+        parts = people.seen[category], people.p_new[category]
+        density = model.use(people.theta, category).density(*parts)
         return density, model.smooth(density)
 
     def _chosen(

@@ -22,6 +22,7 @@ from placing.correlation import (
     kernel_transform,
     separate,
     spread,
+    spread_runs,
     sum_blocks,
 )
 from placing.lattice import ArrangingConfig, Lattice
@@ -29,8 +30,12 @@ from placing.potential import Theta, height_factor, log_psi_ori, planar_table
 
 Array = NDArray[np.float64]
 
+MANY_SITES = 1000
+"""With more sites of poses, transforms are faster than adding up site by site."""
 TINY = 1e-300
 """Guards divisions by the Z of a pose, or the sum of a density, that is zero."""
+MANY_SITES = 1000
+"""Beyond so many sites with a pose, transforms are faster than adding them up."""
 ROUNDING = 1e-10
 """A pose with so small a Z, relative to the largest, has no use of the object: below,
 cumulative sums are off by more than 1e-4 of Z."""
@@ -78,36 +83,75 @@ class UseOfObject:
         share = self.lattice.poses.prior * self.row()
         return share / max(share.sum(), TINY)
 
-    def density(self, weight: Array) -> Array:
+    def density(self, weight: Array, p_new: float = 0.0) -> Array:
         """Return the density of the object over the places, shape (p,), sum 1.
 
-        `weight` (q,) probability that its user has each pose.
+        `weight` (q,) probability that its user has each pose; the user is with `p_new`
+        one that no other object shares, beyond that.
         """
-        lattice, config = self.lattice, self._config
-        key = lattice.spacing_m, lattice.stride, config.radius_m, lattice.n_headings
-        kernel = kernel_transform(self.theta, *key, lattice.size)
-        value = self.per_place(weight)
+        density = self._spread(weight)
+        if p_new > 0:
+            density = density + p_new * self._new_spread
+        return density / max(density.sum(), TINY)
+
+    def histograms(self, weights: Array, p_new: Array | None = None) -> Array:
+        """Return the placements per bin and level for each chain, (r, b), rows sum 1.
+
+        `weights` (r, q) and `p_new` (r,) as in `density`; places of the coarse lattice
+        are counted.
+        """
+        histogram = self._counts(weights)
+        if p_new is not None:
+            histogram = histogram + p_new[:, None] * self._new_counts
+        return histogram / np.maximum(histogram.sum(1, keepdims=True), TINY)
+
+    def _spread(self, weight: Array) -> Array:
+        """Return the density (p,) before it is normalised."""
+        lattice, value = self.lattice, self.per_place(weight)
+        used, gain = self._gain(value[None])
+        if len(used) <= MANY_SITES:
+            sites, n_places = lattice.sites[used], len(lattice.fine)
+            args = gain[:, :, 0], lattice.runs, lattice.stride, n_places
+            return spread_runs(self._table(), sites, *args)
         largest = float(self._table().max()) * self._height.max(initial=0.0)
         loudest = value.max(initial=0.0) * largest
         factors = separate(self._height, ERROR / max(loudest, ERROR))
-        density = spread(lattice, kernel, factors, value)
-        density = np.maximum(density, 0)  # a transform rounds to either side of zero
-        return density / max(density.sum(), TINY)
+        radius_m, n_headings = self._config.radius_m, lattice.n_headings
+        key = lattice.spacing_m, lattice.stride, radius_m, n_headings
+        kernel = kernel_transform(self.theta, *key, lattice.size)
+        found = spread(lattice, kernel, factors, value)
+        return np.maximum(found, 0)  # a transform rounds to either side of zero
 
-    def histograms(self, weights: Array) -> Array:
-        """Return the placements per bin and level for each chain, (r, b), rows sum 1.
+    def _counts(self, weights: Array) -> Array:
+        """Return the histograms (r, b) before they are normalised."""
+        first = self.lattice.first_bin
+        used, gain = self._gain(self.per_place(weights))
+        sites = self.lattice.sites[used]
+        planar = sum_blocks(self._sums(), sites, self.lattice.bin_blocks, first[-1])
+        return _count(planar, gain, first)
 
-        `weights` (r, q) as in `density`; places of the coarse lattice are counted.
+    def _gain(self, value: Array) -> tuple[NDArray[np.intp], Array]:
+        """Return the sites of poses with a value, (u,), and what they give, (u, l, r).
+
+        `value` (r, q) is what a pose gives to each level, up to the height factor.
         """
-        lattice, first = self.lattice, self.lattice.first_bin
-        gain = np.zeros((len(lattice.sites), len(lattice.levels), len(weights)))
-        value = self.per_place(weights)
-        _add_gain(gain, value, self._height, lattice.site, lattice.reference)
-        used = np.flatnonzero(np.bincount(lattice.site, weights.any(0)))
-        sites = lattice.sites[used]
-        planar = sum_blocks(self._sums(), sites, lattice.bin_blocks, first[-1])
-        histogram = _count(planar, gain[used], first)
-        return histogram / np.maximum(histogram.sum(1, keepdims=True), TINY)
+        lattice = self.lattice
+        poses = np.flatnonzero(value.any(0))
+        used, site = np.unique(lattice.site[poses], return_inverse=True)
+        gain = np.zeros((len(used), len(lattice.levels), len(value)))
+        values = np.ascontiguousarray(value[:, poses])
+        _add_gain(gain, values, self._height, site, lattice.reference[poses])
+        return used, gain
+
+    @cached_property
+    def _new_spread(self) -> Array:
+        """Return the density (p,) of a user of its own before it is normalised."""
+        return self._spread(self.new_person())
+
+    @cached_property
+    def _new_counts(self) -> Array:
+        """Return the histogram (b,) of a user of its own before it is normalised."""
+        return self._counts(self.new_person()[None])[0]
 
     def heading_probability(self, place: int, weight: Array, yaws: Array) -> Array:
         """Return the probability of each of `yaws` at a place, (len(yaws),), sum 1."""

@@ -22,6 +22,10 @@ from placing.potential import Theta, planar_table
 Array = NDArray[np.float64]
 
 
+NEGLIGIBLE = 1e-12
+"""What a site gives to a level, relative to the most, that is left out of a sum."""
+
+
 @lru_cache(maxsize=64)
 def cumulative_table(
     theta: Theta, spacing_m: float, radius_m: float, n_headings: int
@@ -132,6 +136,30 @@ def spread(
     waves = fft.ifft(_mix(kernel, waves), axis=2, workers=1)[:, :, : span[0]]
     spread_out = fft.irfft(waves, size[1], workers=1)  # (k, f, x, y)
     return _gather(spread_out, lattice.phase, lattice.at, lattice.level, of_level)
+
+
+@njit(cache=True)
+def spread_runs(table, sites, gain, runs, stride, n_places):  # noqa: ANN001, ANN201
+    """Return the sum over sites of gain (u, l) times the kernel at every place, (p,).
+
+    `sites` (u, 3) heading, x and y; `runs` of places as `Lattice` lays them out.
+    """
+    found = np.zeros(n_places)
+    width = table.shape[1]
+    floor = NEGLIGIBLE * gain.max() if gain.size else 0.0
+    for s in range(len(sites)):
+        planar = table[sites[s, 0]]
+        x0 = width // 2 - sites[s, 1] * stride
+        y0 = width // 2 - sites[s, 2] * stride
+        for m in range(len(runs)):
+            factor, x, y = gain[s, runs[m, 4]], runs[m, 2] + x0, runs[m, 3] + y0
+            if factor > floor and 0 <= x < width:
+                low, high, row = max(0, -y), min(runs[m, 1], width - y), planar[x]
+                # Unsigned integers: no index can count from the end.
+                at, to = np.uint64(y + low), np.uint64(runs[m, 0] + low)
+                for j in range(np.uint64(max(0, high - low))):
+                    found[to + j] += factor * row[at + j]
+    return found
 
 
 @njit(cache=True)

@@ -41,6 +41,8 @@ class DiagnosticsConfig:
     """R-hat of a mixed question is below."""
     max_variation: float
     """Total variation between two chains of a mixed question is below."""
+    n_doublings: int
+    """How often chains outside the gates are run again with twice the sweeps."""
 
 
 @dataclass(frozen=True)

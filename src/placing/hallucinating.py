@@ -4,13 +4,14 @@ Shapes: n objects, given then wanted; q valid poses; r chains; c wanted categori
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
 from placing import dpmm
+from placing.diagnostics import Diagnosis, diagnose
 from placing.learned import theta_name
 from placing.scene_model import SceneModel
 from placing.tasks import Question
@@ -27,19 +28,24 @@ class People:
 
     theta: str
     """Name of the Theta by which they use objects."""
+    seen: Mapping[str, Array]
+    """Per wanted category, the probability that its user is one that was sampled and
+    has each pose, (q,)."""
+    p_new: Mapping[str, float]
+    """The rest: the probability that its user is a new one."""
     weight: Mapping[str, Array]
     """Per wanted category, the probability that its user has each pose, (q,)."""
-    by_chain: Mapping[str, Array]
-    """The same for each chain, (r, q)."""
     chains: dpmm.Chains | None
     """None where poses are not inferred."""
+    diagnosis: Diagnosis | None
+    """How far the chains agree; None without chains."""
 
 
 def random_people(model: SceneModel, question: Question) -> People:
     """Return people drawn from P0, whatever objects there are."""
     prior = model.poses.prior
     weight = dict.fromkeys(categories_of(question), prior)
-    return People("dp", weight, {name: prior[None] for name in weight}, None)
+    return People("dp", weight, dict.fromkeys(weight, 0.0), weight, None, None)
 
 
 def hallucinate(
@@ -48,22 +54,47 @@ def hallucinate(
     """Return people sampled with the given objects, wanted ones summed out (eq. 3).
 
     `n_components` poses of the finite mixture, 0 for the Dirichlet process. A wanted
-    object without a place in the scene tells nothing about people.
+    object without a place in the scene tells nothing about people. Chains that
+    disagree are run again, longer; what still disagrees is kept with its diagnosis.
     """
     theta = theta_name("fmm" if n_components else "dp", n_components)
+    config, gates = model.settings.sampling, model.settings.diagnostics
+    for doubling in range(gates.n_doublings + 1):
+        longer = replace(
+            config,
+            n_burn_in=config.n_burn_in * 2**doubling,
+            n_samples=config.n_samples * 2**doubling,
+        )
+        people = _run_chains(rng, model, question, theta, n_components, longer)
+        if people.diagnosis is None or people.diagnosis.is_mixed(gates):
+            break
+    return people
+
+
+def _run_chains(
+    rng: Generator,
+    model: SceneModel,
+    question: Question,
+    theta: str,
+    n_components: int,
+    config: dpmm.DpmmConfig,
+) -> People:
+    """Return people sampled with chains of one length."""
     names = categories_of(question)
     rows = [model.given_row(theta, question.labels, p) for p in question.given]
     rows += [model.wanted_row(theta, item.category) for item in question.wanted]
     slots = [-1] * len(question.given)
     slots += [names.index(item.category) for item in question.wanted]
-    args = np.stack(rows), model.poses.prior, model.settings.sampling
-    chains = dpmm.sample(rng, *args, np.array(slots), n_components)
-    by_chain = {}
+    args = np.stack(rows), model.poses.prior, config, np.array(slots)
+    chains = dpmm.sample(rng, *args, n_components)
+    seen, p_new, weight, histograms = {}, {}, {}, []
     for slot, name in enumerate(names):
-        seen, new = chains.weight[:, slot, :-1], chains.weight[:, slot, -1:]
-        by_chain[name] = seen + new * model.use(theta, name).new_person()
-    weight = {name: rows.mean(0) for name, rows in by_chain.items()}
-    return People(theta, weight, by_chain, chains)
+        use, of_slot = model.use(theta, name), chains.weight[:, slot]
+        seen[name], p_new[name] = of_slot[:, :-1].mean(0), float(of_slot[:, -1].mean())
+        weight[name] = seen[name] + p_new[name] * use.new_person()
+        histograms.append(use.histograms(of_slot[:, :-1], of_slot[:, -1]))
+    diagnosis = diagnose(chains, histograms) if config.n_chains > 1 else None
+    return People(theta, seen, p_new, weight, chains, diagnosis)
 
 
 def categories_of(question: Question) -> list[str]:

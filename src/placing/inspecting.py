@@ -1,4 +1,4 @@
-"""What is said about an answer beside the placements: diagnosis, reasons, regions.
+"""What is said about an answer beside the placements: reasons and regions.
 
 Shapes: p places, q valid poses, l levels.
 """
@@ -9,24 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from placing.answering import Answer, Asked, Chosen
-from placing.diagnostics import Diagnosis, diagnose
 from placing.explanation import Field, explain, explanation_rows
 from placing.hallucinating import People
 from placing.regions import REGION_LEVELS, calibrate, region_areas
 
 Array = NDArray[np.float64]
-
-
-def diagnosis_of(asked: Asked, answer: Answer) -> Diagnosis | None:
-    """Return how far the chains of an answer agree; None where nothing was sampled."""
-    people = answer.people
-    if people is None or people.chains is None:
-        return None
-    histograms = [
-        asked.model.use(people.theta, category).histograms(weights)
-        for category, weights in people.by_chain.items()
-    ]
-    return diagnose(people.chains, histograms)
 
 
 def reasons_of(

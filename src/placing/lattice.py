@@ -67,6 +67,7 @@ class Lattice:
         self._lay_out_transforms(cells, pose_cells // self.stride)
         self._lay_out_sites(heading, pose_cells // self.stride)
         self._lay_out_blocks(candidates.location[:, :2], cells)
+        self.runs = _runs(fine, self.level)
 
     def _lay_out_transforms(self, cells: Indices, pose_cells: Indices) -> None:
         """Choose the size of the transforms, and where each place is in them."""
@@ -113,6 +114,18 @@ def _n_headings(yaw: Array) -> int:
     """Return how many headings the poses take."""
     used = np.unique(np.round(yaw, 9))
     return round(2 * np.pi / np.diff(used).min()) if len(used) > 1 else 1
+
+
+def _runs(fine: Indices, level: Indices) -> NDArray[np.int32]:
+    """Return the runs of places that follow each other along y, (n, 5).
+
+    First place, how many, x and y of the first, level.
+    """
+    steps = np.diff(np.column_stack([level, fine]), axis=0)
+    goes_on = (steps == [0, 0, 1]).all(1)
+    first = np.flatnonzero(np.append(True, ~goes_on)[: len(fine)])
+    length = np.diff(np.append(first, len(fine)))
+    return np.column_stack([first, length, fine[first], level[first]]).astype(np.int32)
 
 
 def _blocks(cells: Indices, group: Indices) -> NDArray[np.int32]:

@@ -14,6 +14,7 @@ from placing.arranging import UseOfObject
 from placing.baselines import BaselinesConfig, chance_density, histogram_density
 from placing.candidates import Candidates, CandidatesConfig, fits
 from placing.decision import DecisionConfig, Smoother
+from placing.diagnostics import DiagnosticsConfig
 from placing.fitting import BROAD
 from placing.human import HumanPoses, headings
 from placing.lattice import ArrangingConfig, Lattice
@@ -32,6 +33,7 @@ class Settings:
 
     candidates: CandidatesConfig
     sampling: dpmm.DpmmConfig
+    diagnostics: DiagnosticsConfig
     arranging: ArrangingConfig
     decision: DecisionConfig
     baselines: BaselinesConfig

@@ -3,21 +3,29 @@
 import numpy as np
 
 from placing import rigid
-from placing.baselines import BaselinesConfig
+from placing.baselines import FEATURES_OF, BaselinesConfig, learn_histograms
 from placing.candidates import Candidates, CandidatesConfig
 from placing.clouds.ply import Cloud
 from placing.decision import DecisionConfig
+from placing.diagnostics import DiagnosticsConfig
 from placing.dpmm import DpmmConfig
+from placing.examples import baseline_values, examples_of
+from placing.fitting import FittingConfig
 from placing.human import HumanPoses
 from placing.lattice import ArrangingConfig
+from placing.learned import Learned
+from placing.learning import LearningConfig, learn_theta
+from placing.object_context import ObjectContextConfig, learn_relations
 from placing.places import find_candidates
 from placing.scene import Arrangement, Placement, PlacingArea, Scene, SceneObject
-from placing.scene_model import Settings
+from placing.scene_model import SceneModel, Settings
+from placing.seeds import generator
 from placing.valid_poses import PosesConfig, valid_poses
 
 SETTINGS = Settings(
     CandidatesConfig(0.05, 8, 0.7, 0.05),
     DpmmConfig("exact_birth", 1.0, 8, 2, 20, 40),
+    DiagnosticsConfig(1.5, 0.5, 1),
     ArrangingConfig(4.0, 0.1),
     DecisionConfig(0.2, 0.25),
     BaselinesConfig(0.05, 0.05, 0.1, 0.2, 3.0, 1.0, 1.0, 0.7, 12.0, 0.1, 0.1, 1.0),
@@ -81,3 +89,25 @@ def study() -> tuple[Scene, Candidates, HumanPoses]:
     poses = PosesConfig(0.2, 0.1, 8, 0.05, 0.3, 0.8)
     valid = valid_poses(cloud.points, scene.areas, poses)
     return scene, find_candidates(cloud, scene.areas, SETTINGS.candidates), valid
+
+
+def study_model() -> SceneModel:
+    """Return the scene with what is learned from that very scene."""
+    scene, candidates, poses = study()
+    rng = generator(0, "test")
+    config = LearningConfig(5, 10, 10, 1)
+    fitting = FittingConfig(0.2, 50.0, 0.1, 0.05)
+    examples = [examples_of(scene, poses)]
+    thetas, _ = learn_theta(rng, examples, SETTINGS.sampling, config, fitting)
+    histograms = {
+        method: learn_histograms(
+            baseline_values([(scene, candidates)], method), method, SETTINGS.baselines
+        )
+        for method in FEATURES_OF
+    }
+    labelled = [(scene, a) for a in scene.arrangements]
+    context = ObjectContextConfig(0.1, 50.0, 0.1, 0.05, 1.0)
+    relations = learn_relations(labelled, context)
+    mixtures = {"dp": thetas, "fmm2": thetas, "fmm3": thetas}
+    learned = Learned(mixtures, histograms, relations)
+    return SceneModel(scene, candidates, poses, learned, SETTINGS)

@@ -5,16 +5,12 @@ from functools import partial
 
 import numpy as np
 import pytest
-from study import SETTINGS, study
+from study import SETTINGS, study_model
 
 from placing import dpmm
 from placing.answering import METHODS, NO_EXAMPLE, NO_PLACE, NO_POSE, Asked
-from placing.baselines import FEATURES_OF, learn_histograms
-from placing.examples import baseline_values, examples_of
-from placing.fitting import BROAD, FittingConfig
+from placing.fitting import BROAD
 from placing.learned import Choices, Learned
-from placing.learning import LearningConfig, learn_theta
-from placing.object_context import ObjectContextConfig, learn_relations
 from placing.scene_model import SceneModel
 from placing.seeds import generator
 from placing.tasks import questions
@@ -22,25 +18,7 @@ from placing.tasks import questions
 
 @pytest.fixture(scope="module")
 def model():
-    """Return the answers of a method that has learned from the very same scene."""
-    scene, candidates, poses = study()
-    rng = generator(0, "test")
-    fitting = FittingConfig(0.2, 50.0, 0.1, 0.05)
-    config = LearningConfig(5, 10, 10, 1)
-    examples = [examples_of(scene, poses)]
-    thetas, _ = learn_theta(rng, examples, SETTINGS.sampling, config, fitting)
-    histograms = {
-        method: learn_histograms(
-            baseline_values([(scene, candidates)], method), method, SETTINGS.baselines
-        )
-        for method in FEATURES_OF
-    }
-    labelled = [(scene, a) for a in scene.arrangements]
-    relations = learn_relations(
-        labelled, ObjectContextConfig(0.1, 50.0, 0.1, 0.05, 1.0)
-    )
-    learned = Learned({"dp": thetas, "fmm2": thetas}, histograms, relations)
-    return SceneModel(scene, candidates, poses, learned, SETTINGS)
+    return study_model()
 
 
 def asked_of(model, task, question=0):

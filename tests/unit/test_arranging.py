@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from placing import arranging
 from placing.arranging import UseOfObject
 from placing.candidates import FEATURES, Candidates
 from placing.correlation import separate
@@ -193,3 +194,22 @@ def test_separated_height_factor_multiplies_back():
     of_level, of_reference = separate(height, 1e-10)
     np.testing.assert_allclose(of_level @ of_reference, height, atol=1e-9)
     assert len(of_reference) < 16
+
+
+def test_a_new_user_adds_to_the_density_what_the_new_person_would(scene):
+    use = use_of(scene)
+    rng = np.random.default_rng(3)
+    seen = np.where(rng.random(len(scene[1].kind)) < 0.05, 1.0, 0.0)
+    seen *= 0.6 / seen.sum()
+    whole = use.density(seen + 0.4 * use.new_person())
+    np.testing.assert_allclose(use.density(seen, 0.4), whole, rtol=1e-6, atol=1e-12)
+    rows = np.stack([seen, seen]), np.array([0.4, 0.4])
+    counted = use.histograms(rows[0] + 0.4 * use.new_person())
+    np.testing.assert_allclose(use.histograms(*rows), counted, atol=1e-12)
+
+
+def test_sums_over_few_and_over_many_poses_agree(scene, monkeypatch):
+    weight = np.random.default_rng(4).random(len(scene[1].kind))
+    direct = use_of(scene).density(weight)
+    monkeypatch.setattr(arranging, "MANY_SITES", 0)
+    np.testing.assert_allclose(use_of(scene).density(weight), direct, rtol=1e-6)

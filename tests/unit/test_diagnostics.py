@@ -22,7 +22,7 @@ from placing.diagnostics_table import (
 )
 from placing.dpmm import Chains
 
-GATES = DiagnosticsConfig(1.05, 0.05)
+GATES = DiagnosticsConfig(1.05, 0.05, 0)
 
 
 def traces():

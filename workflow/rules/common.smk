@@ -25,7 +25,8 @@ os.environ.setdefault("PYTHONHASHSEED", "0")
 os.environ.setdefault("MPLBACKEND", "Agg")
 
 TASKS = ["filled", "empty"]
-ANSWERING = ["candidates", "sampling", "arranging", "decision", "baselines"]
+ANSWERING = ["candidates", "sampling", "diagnostics", "arranging"]
+ANSWERING += ["decision", "baselines"]
 
 
 def schema_of(name):

@@ -111,7 +111,7 @@ rule sample_arrangement:
         code=digest("sample_arrangement"),
         seed=config["seed"],
         settings=flags(*ANSWERING, within="settings."),
-        diagnostics=flags("diagnostics", "scoring"),
+        scoring=flags("scoring"),
     shell:
         r"""
         python workflow/scripts/sample_arrangement.py \
@@ -130,7 +130,7 @@ rule sample_arrangement:
             --explanations {output.explanations:q} \
             --seed {params.seed:q} \
             {params.settings:q} \
-            {params.diagnostics:q} \
+            {params.scoring:q} \
             2>{log:q}
         """
 

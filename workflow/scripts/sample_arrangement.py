@@ -16,7 +16,6 @@ from placing.artifacts.formats import write_table
 from placing.artifacts.scenes import read_scene
 from placing.artifacts.theta import read_learned
 from placing.artifacts.tuning import read_tuning
-from placing.diagnostics import DiagnosticsConfig
 from placing.likelihoods import ScoringConfig
 from placing.scene_model import SceneModel, Settings
 from placing.seeds import generator
@@ -41,7 +40,6 @@ def main(
     explanations: Path,
     seed: int,
     settings: Settings,
-    diagnostics: DiagnosticsConfig,
     scoring: ScoringConfig,
 ) -> None:
     """Arrange the objects of every scene of a fold with every method of a task.
@@ -62,12 +60,11 @@ def main(
         explanations: Table to write: why `dp` and `dp_object` chose a place.
         seed: Root of all random streams.
         settings: Sections of the configuration that answering looks at.
-        diagnostics: Gates of the diagnostics.
         scoring: How densities are scored.
     """
     learned = read_learned(theta)
     choices, ranks = read_tuning(tuning, task)
-    sheets = Sheets(scoring, diagnostics, ranks[task])
+    sheets = Sheets(scoring, ranks[task])
     for path in tqdm(sorted(scenes.glob("*.json")), unit="scene", disable=None):
         scene = read_scene(path)
         candidates, valid = read_features(features / f"{scene.scene}.npz")
