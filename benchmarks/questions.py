@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from placing import dpmm
 from placing.human import HumanPoses, headings, prior_of
 from placing.potential import Theta, log_psi_human
+from placing.valid_poses import neighbours_first
 
 Array = NDArray[np.float64]
 
@@ -49,6 +50,8 @@ def full_scene(n_objects: int = 17, n_poses: int = 80_000, seed: int = 0) -> Que
     kind, yaw, x, y = grid.reshape(-1, 4).astype(float).T
     location = np.column_stack([x, y, np.zeros(len(x))])
     kind = kind.astype(np.uint8)
+    order = neighbours_first(kind, location, yaw)
+    kind, location, yaw = kind[order], location[order], yaw[order]
     poses = HumanPoses(kind, location, yaw, prior_of(kind))
     free = np.stack(np.meshgrid(side, side, [0.75], yaw[:1], indexing="ij"), -1)
     places = free.reshape(-1, 4)[:, :3]

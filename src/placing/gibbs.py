@@ -1,14 +1,16 @@
 """The compiled sweep of the pose sampler, and exact draws that read little of a row.
 
-The valid poses are cut into tiles of neighbouring poses. A tile knows the largest
-entry of each object's row and the mean of the row under P0. A pose for several objects
-is drawn by rejection over tiles: a tile is drawn in proportion to an upper bound of
-its weight, and accepted with the probability exact weight / bound; a refused tile
-takes its exact weight as its bound. Whatever the bounds are, an accepted tile t has
-probability proportional to its exact weight, so that the draw is exact, and only the
-tiles that were drawn are read.
+The valid poses are cut into tiles of neighbouring poses, and these into blocks. Both
+know the largest entry of each object's row and the mean of the row under P0. A pose for
+several objects is drawn by rejection: a block is drawn in proportion to an upper bound
+of its weight and accepted with the probability that the bounds of its tiles allow, then
+a tile of it likewise, by its exact weight; what was looked into has the better bound
+from then on. Whatever the bounds are, an accepted tile has probability proportional to
+its exact weight, so that the draw is exact, and only what was drawn is read.
 
-Shapes: n objects, q valid poses, t tiles, c slots of wanted objects.
+All kernels stand in one file, since a cached kernel does not see an edit of another.
+
+Shapes: n objects, q valid poses, t tiles, b blocks, c slots of wanted objects.
 """
 
 from typing import NamedTuple
@@ -22,7 +24,7 @@ Array = NDArray[np.float64]
 TILE = 32
 """Poses in a tile."""
 BLOCK = 16
-"""Tiles whose bounds are also kept as a sum, so that few are added up in a draw."""
+"""Tiles in a block."""
 MIN_BOUND = 1e-100
 """A cluster whose bounds fall below is scaled up, so that no product underflows."""
 MIN_TOTAL = 1e-250
@@ -43,6 +45,9 @@ class Tiles(NamedTuple):
     """(n, t) largest entry of each row in each tile."""
     relative: Array
     """(n, t) sum of P0 times the row over the tile, relative to `highest`."""
+    block_highest: Array
+    block_relative: Array
+    """(n, b) the same of blocks."""
     birth_below: Array
     """(n, t) cumulative sum of P0 times the row; its end is the weight of a birth."""
 
@@ -76,7 +81,9 @@ class Buffers(NamedTuple):
     is_exact: NDArray[np.bool_]
     """(t,) whether it is the weight itself."""
     block: Array
-    """Sum of every `BLOCK` of them."""
+    """(b,) upper bound of the weight of each block, or the sum over its tiles."""
+    is_open: NDArray[np.bool_]
+    """(b,) whether it is that sum."""
     below: Array
     """(TILE,) cumulative weights of the poses of a tile."""
 
@@ -98,16 +105,32 @@ def tile_rows(rows, prior):  # noqa: ANN001, ANN201
             below += total
             highest[i, t], birth_below[i, t] = top, below
             relative[i, t] = total / top if top > 0 else 0.0
-    return Tiles(rows, prior, np.cumsum(prior), highest, relative, birth_below)
+    blocks = bound_blocks(highest, relative)
+    return Tiles(rows, prior, np.cumsum(prior), highest, relative, *blocks, birth_below)
+
+
+@njit(cache=True)
+def bound_blocks(highest, relative):  # noqa: ANN001, ANN201
+    """Return what `highest` and `relative` (n, t) are for blocks of tiles, (n, b)."""
+    n, n_tiles = highest.shape
+    n_blocks = (n_tiles + BLOCK - 1) // BLOCK
+    tops, sums = np.zeros((n, n_blocks)), np.zeros((n, n_blocks))
+    for i in range(n):
+        for b in range(n_blocks):
+            part = slice(b * BLOCK, (b + 1) * BLOCK)
+            tops[i, b] = highest[i, part].max()
+            total = (highest[i, part] * relative[i, part]).sum()
+            sums[i, b] = total / tops[i, b] if tops[i, b] > 0 else 0.0
+    return tops, sums
 
 
 @njit(cache=True)
 def buffers_of(tiles):  # noqa: ANN001, ANN201
     """Return the memory for draws from these tiles."""
-    n_tiles = tiles.highest.shape[1]
-    n_blocks = (n_tiles + BLOCK - 1) // BLOCK
-    is_exact = np.zeros(n_tiles, np.bool_)
-    return Buffers(np.zeros(n_tiles), is_exact, np.zeros(n_blocks), np.zeros(TILE))
+    n_tiles, n_blocks = tiles.highest.shape[1], tiles.block_highest.shape[1]
+    is_exact, is_open = np.zeros(n_tiles, np.bool_), np.zeros(n_blocks, np.bool_)
+    block, below = np.zeros(n_blocks), np.zeros(TILE)
+    return Buffers(np.zeros(n_tiles), is_exact, block, is_open, below)
 
 
 @njit(cache=True)
@@ -115,8 +138,7 @@ def run(rng, tiles, mixture, together, n_burn_in, slot, choice, pose, trace, wei
     """Fill `choice`, `pose` (s, n), `trace` (3, s) and `weight` sweep by sweep.
 
     The rows of `trace` are the log joint, the poses in use and the probability of a
-    new one. It stands here since a cached kernel does not see the edits of another
-    file.
+    new one.
     """
     state = init(rng, tiles, together)
     buffers, nowhere = buffers_of(tiles), np.full(len(slot), -1)
@@ -270,23 +292,73 @@ def draw_pose(rng, tiles, members, buffers):  # noqa: ANN001, ANN201
     """Return a pose drawn in proportion to P0 times the rows of `members`."""
     if len(members) == 1:
         return draw_birth(rng, tiles, members[0])
-    bound, is_exact, block, below = buffers
-    scale = bound_tiles(tiles, members, bound)
-    is_exact[:] = False
-    for b in range(len(block)):
-        block[b] = bound[b * BLOCK : (b + 1) * BLOCK].sum()
-    while block.sum() > MIN_TOTAL:
-        t = search_blocks(block, bound, rng.random())
+    bound, is_exact, block, is_open, below = buffers
+    scale = weigh_blocks(tiles, members, block)
+    is_open[:] = False
+    while True:
+        whole = block.sum()
+        if whole <= MIN_TOTAL:
+            return draw_in_logs(rng, tiles, members)
+        b = draw_index(block, 0, len(block), rng.random() * whole)
+        first, last = b * BLOCK, min(len(bound), (b + 1) * BLOCK)
+        if not is_open[b]:
+            closed = block[b]
+            block[b] = weigh_tiles(tiles, members, scale, first, last, bound)
+            is_open[b], is_exact[first:last] = True, False
+            if rng.random() * closed >= block[b]:
+                continue
+        t = draw_index(bound, first, last, rng.random() * bound[first:last].sum())
         size = sum_tile(tiles, members, scale, t, below)
-        total = below[size - 1]
-        u = rng.random()
+        total, u = below[size - 1], rng.random()
         if is_exact[t] or u * bound[t] < total:
             u = u if is_exact[t] else u * bound[t] / total
             return t * TILE + search(below[:size], u)
         bound[t], is_exact[t] = total, True
-        first = t - t % BLOCK
-        block[t // BLOCK] = bound[first : first + BLOCK].sum()
-    return draw_in_logs(rng, tiles, members)
+        block[b] = bound[first:last].sum()
+
+
+@njit(cache=True)
+def weigh_blocks(tiles, members, block):  # noqa: ANN001, ANN201
+    """Fill `block` (b,) with an upper bound of the weight of each block.
+
+    The sum of P0 times several rows is at most the product of their largest entries
+    times the smallest sum of P0 times one of them, relative to its largest entry.
+    Return the factors (members,) that multiply the product after each of them.
+    """
+    scale = np.ones(len(members))
+    block[:] = tiles.block_relative[members[0]]
+    for j in range(1, len(members)):
+        np.minimum(block, tiles.block_relative[members[j]], block)
+    for j in range(len(members)):
+        block *= tiles.block_highest[members[j]]
+        if j % 8 == 7 and block.max() < MIN_BOUND:
+            scale[j] = 1 / block.max()
+            block *= scale[j]
+    return scale
+
+
+@njit(cache=True)
+def weigh_tiles(tiles, members, scale, first, last, bound):  # noqa: ANN001, ANN201
+    """Fill `bound` from tile `first` to `last` with upper bounds; return their sum."""
+    total = 0.0
+    for t in range(first, last):
+        smallest, product = np.inf, 1.0
+        for j in range(len(members)):
+            smallest = min(smallest, tiles.relative[members[j], t])
+            product *= tiles.highest[members[j], t] * scale[j]
+        bound[t] = smallest * product
+        total += bound[t]
+    return total
+
+
+@njit(cache=True)
+def draw_index(weight, first, last, left):  # noqa: ANN001, ANN201
+    """Return the index from `first` at which the sum of `weight` passes `left`."""
+    i = first
+    while i < last - 1 and left >= weight[i]:
+        left -= weight[i]
+        i += 1
+    return i
 
 
 @njit(cache=True)
@@ -296,43 +368,6 @@ def draw_in_logs(rng, tiles, members):  # noqa: ANN001, ANN201
     for j in range(len(members)):
         logs += np.log(tiles.rows[members[j]])
     return search(np.cumsum(np.exp(logs - logs.max())), rng.random())
-
-
-@njit(cache=True)
-def bound_tiles(tiles, members, bound):  # noqa: ANN001, ANN201
-    """Fill `bound` (t,) with an upper bound of the weight of each tile.
-
-    The sum of P0 times several rows is at most the product of their largest entries
-    times the smallest sum of P0 times one of them, relative to its largest entry.
-    Return the factors (members,) that multiply the product after each of them.
-    """
-    scale = np.ones(len(members))
-    bound[:] = tiles.relative[members[0]]
-    for j in range(1, len(members)):
-        np.minimum(bound, tiles.relative[members[j]], bound)
-    for j in range(len(members)):
-        bound *= tiles.highest[members[j]]
-        if j % 8 == 7 and bound.max() < MIN_BOUND:
-            scale[j] = 1 / bound.max()
-            bound *= scale[j]
-    return scale
-
-
-@njit(cache=True)
-def search_blocks(block, bound, u):  # noqa: ANN001, ANN201
-    """Return the tile that a uniform `u` draws in proportion to `bound`."""
-    total = 0.0
-    for b in range(len(block)):
-        total += block[b]
-    left, b = u * total, 0
-    while b < len(block) - 1 and left >= block[b]:
-        left -= block[b]
-        b += 1
-    t, last = b * BLOCK, min(len(bound), (b + 1) * BLOCK) - 1
-    while t < last and left >= bound[t]:
-        left -= bound[t]
-        t += 1
-    return t
 
 
 @njit(cache=True)

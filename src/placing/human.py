@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class HumanPoses:
-    """The valid human poses of a scene, ordered by kind, heading and place."""
+    """The valid human poses of a scene; those that follow each other are near."""
 
     kind: NDArray[np.uint8]
     """(q,) index into `skeleton.KINDS`."""

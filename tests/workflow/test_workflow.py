@@ -110,7 +110,8 @@ def test_the_linter_complains_about_containers_only(project):
 def test_the_real_study_can_be_planned(project):
     shutil.copy(ROOT / "config" / "scenes.csv", project / "config" / "scenes.csv")
     jobs = planned(snakemake(project, "-n"))
-    assert jobs["learn_theta"] == 10
+    assert jobs["learn_theta"] == 2 * (5 + 10)  # without each fold, and each pair
+    assert jobs["tune_methods"] == 10
     assert jobs["sample_arrangement"] == 20
 
 
@@ -137,19 +138,20 @@ def test_an_edited_module_runs_the_stages_that_import_it(finished):
 
 def test_a_changed_number_runs_the_stages_of_its_section(finished):
     changed = finished / "changed.yaml"
-    changed.write_text("scoring: {uniform_share: 0.02}\n")
+    changed.write_text("sensitivity: {concentrations: [0.5]}\n")
     # The last of several configuration files wins.
     said = snakemake(finished, "-n", configs=("small.yaml", "changed.yaml"))
     jobs = planned(said)
-    assert jobs["score_arrangement"] == 8
+    assert jobs["vary_settings"] == 2
     assert not {"preprocess_cloud", "learn_theta", "sample_arrangement"} & set(jobs)
 
 
 def test_one_fold_can_run_again_alone(finished):
     target = "results/rooms/fold1.csv"
-    said = snakemake(finished, "-n", target, "--forcerun", "learn_theta")
+    theta = "results/rooms/theta/fold1"
+    said = snakemake(finished, "-n", target, "--forcerun", theta)
     jobs = planned(said)
-    assert (jobs.pop("learn_theta"), jobs.pop("total")) == (1, 6)
+    assert (jobs.pop("learn_theta"), jobs.pop("total")) == (1, 7)
     assert "fold=0" not in said
 
 
