@@ -48,6 +48,8 @@ class LearningConfig:
     n_burn_in: int
     n_samples: int
     """Sweeps dropped and kept per scene and round."""
+    scenes_per_round: int
+    """Most scenes that a round looks at; of more it takes every second, third …"""
     n_restarts: int
     """Runs from different starts, of which the likeliest is kept."""
 
@@ -83,7 +85,7 @@ def learn_theta(
     """Return Theta per category and the trace of the learning.
 
     `examples` holds the labelled arrangements of each training scene, in any order of
-    the scenes; every round looks at one arrangement of each scene, in turn.
+    the scenes; every round looks at one arrangement of each of its scenes, in turn.
     `n_components` > 0 learns under the finite mixture of that many poses.
     """
     chain = replace(
@@ -131,10 +133,12 @@ def _learn_once(
     names = sorted({c for scene in scenes for e in scene for c in e.categories})
     thetas, trace = dict.fromkeys(names, start), []
     kept: dict[tuple[int, int], Array] = {}
+    n_groups = -(-len(scenes) // config.scenes_per_round)
     for iteration in range(config.n_iterations):
         parameters, values = parameters_of([thetas[name] for name in names]), []
-        for number, scene in enumerate(scenes):
-            turn = iteration % len(scene)
+        for number in range(iteration % n_groups, len(scenes), n_groups):
+            scene = scenes[number]
+            turn = iteration // n_groups % len(scene)
             code = np.searchsorted(names, scene[turn].categories)
             statistics, value = visit(scene[turn], parameters[code])
             kept[number, turn] = np.zeros((len(names), len(STATISTICS)))

@@ -95,7 +95,7 @@ def study_model() -> SceneModel:
     """Return the scene with what is learned from that very scene."""
     scene, candidates, poses = study()
     rng = generator(0, "test")
-    config = LearningConfig(5, 10, 10, 1)
+    config = LearningConfig(5, 10, 10, 100, 1)
     fitting = FittingConfig(0.2, 50.0, 0.1, 0.05)
     examples = [examples_of(scene, poses)]
     thetas, _ = learn_theta(rng, examples, SETTINGS.sampling, config, fitting)

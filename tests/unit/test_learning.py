@@ -13,7 +13,7 @@ from placing.fitting import BROAD, FittingConfig
 from placing.learning import Example, LearningConfig, learn_theta
 from placing.offsets import find_spots
 
-CONFIG = LearningConfig(6, 5, 5, 1)
+CONFIG = LearningConfig(6, 5, 5, 100, 1)
 FITTING = FittingConfig(1.0, 50.0, 0.05, 0.02)
 SAMPLING = DpmmConfig("exact_birth", 1.0, 8, 1, 0, 1)
 CATEGORIES = ("cup", "screen", "cup", "mouse")
@@ -126,3 +126,11 @@ def test_every_fit_looks_at_all_arrangements_seen_so_far(scenes):
     np.testing.assert_allclose(
         found, [expected[0], expected[1], expected[1]], atol=1e-6
     )
+
+
+def test_scenes_that_take_turns_teach_the_same(scenes):
+    turns = replace(CONFIG, scenes_per_round=4, n_iterations=12)
+    thetas, _ = learn(scenes, turns)
+    whole, _ = learn(scenes)
+    for name, theta in whole.items():
+        assert thetas[name].height_mean_m == pytest.approx(theta.height_mean_m, abs=0.1)

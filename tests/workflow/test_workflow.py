@@ -112,7 +112,7 @@ def test_the_real_study_can_be_planned(project):
     jobs = planned(snakemake(project, "-n"))
     assert jobs["learn_theta"] == 2 * (5 + 10)  # without each fold, and each pair
     assert jobs["tune_methods"] == 10
-    assert jobs["sample_arrangement"] == 20
+    assert jobs["sample_arrangement"] == 10
 
 
 def test_a_second_run_has_nothing_to_do(finished):
@@ -151,7 +151,7 @@ def test_one_fold_can_run_again_alone(finished):
     theta = "results/rooms/theta/fold1"
     said = snakemake(finished, "-n", target, "--forcerun", theta)
     jobs = planned(said)
-    assert (jobs.pop("learn_theta"), jobs.pop("total")) == (1, 7)
+    assert (jobs.pop("learn_theta"), jobs.pop("total")) == (1, 6)
     assert "fold=0" not in said
 
 

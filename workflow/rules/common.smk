@@ -148,6 +148,11 @@ def of_every_fold(path):
     return lambda wildcards: every(path, wildcards.dataset)
 
 
+def of_tasks(path):
+    """Return `path` for every task, other wildcards kept."""
+    return expand(path, task=TASKS, allow_missing=True)
+
+
 def of_office(path):
     """Return `path` in the fold of the office of the figures."""
     return path.format(fold=OFFICE["fold"])

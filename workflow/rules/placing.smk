@@ -89,24 +89,27 @@ rule tune_methods:
 
 
 rule sample_arrangement:
-    """Sample human poses in the scenes of a fold and arrange the objects by them."""
+    """Sample human poses in the scenes of a fold and arrange the objects by them.
+
+    Both tasks at once, since they share what is computed of a scene.
+    """
     input:
         theta="results/{dataset}/theta/fold{fold}",
         tuning="results/{dataset}/tuning/fold{fold}.json",
         scenes="results/{dataset}/scenes/fold{fold}",
         features="results/{dataset}/features/fold{fold}",
     output:
-        arrangements="results/{dataset}/arrangements/{task}/fold{fold}.parquet",
-        poses="results/{dataset}/poses/{task}/fold{fold}.parquet",
-        likelihoods="results/{dataset}/likelihoods/{task}/fold{fold}.parquet",
-        densities=directory("results/{dataset}/densities/{task}/fold{fold}"),
-        traces="results/{dataset}/traces/{task}/fold{fold}.parquet",
-        diagnoses="results/{dataset}/diagnostics/{task}/fold{fold}.parquet",
-        explanations="results/{dataset}/explanations/{task}/fold{fold}.parquet",
+        arrangements=of_tasks("results/{dataset}/arrangements/{task}/fold{fold}.parquet"),
+        likelihoods=of_tasks("results/{dataset}/likelihoods/{task}/fold{fold}.parquet"),
+        poses=of_tasks("results/{dataset}/poses/{task}/fold{fold}.parquet"),
+        densities=directory(of_tasks("results/{dataset}/densities/{task}/fold{fold}")),
+        traces=of_tasks("results/{dataset}/traces/{task}/fold{fold}.parquet"),
+        diagnoses=of_tasks("results/{dataset}/diagnostics/{task}/fold{fold}.parquet"),
+        explanations=of_tasks("results/{dataset}/explanations/{task}/fold{fold}.parquet"),
     log:
-        "results/logs/sample_arrangement/{dataset}/{task}/fold{fold}.log",
+        "results/logs/sample_arrangement/{dataset}/fold{fold}.log",
     benchmark:
-        "results/benchmarks/sample_arrangement/{dataset}/{task}/fold{fold}.tsv"
+        "results/benchmarks/sample_arrangement/{dataset}/fold{fold}.tsv"
     params:
         code=digest("sample_arrangement"),
         seed=config["seed"],
@@ -116,7 +119,6 @@ rule sample_arrangement:
         r"""
         python workflow/scripts/sample_arrangement.py \
             --dataset {wildcards.dataset:q} \
-            --task {wildcards.task:q} \
             --theta {input.theta:q} \
             --tuning {input.tuning:q} \
             --scenes {input.scenes:q} \

@@ -1,14 +1,17 @@
-"""Arrange the objects of every scene of a fold with every method of a task."""
+"""Arrange the objects of every scene of a fold with every method, for both tasks."""
 
 import logging
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 from numpy.random import Generator
+from numpy.typing import NDArray
 from tqdm import tqdm
 
 from command import run
-from placing.answer_sheets import Sheets
+from placing.answer_sheets import COLUMNS, Sheets
 from placing.answering import Asked
 from placing.artifacts.densities import write_densities
 from placing.artifacts.features import read_features
@@ -16,77 +19,99 @@ from placing.artifacts.formats import write_table
 from placing.artifacts.scenes import read_scene
 from placing.artifacts.theta import read_learned
 from placing.artifacts.tuning import read_tuning
+from placing.learned import Choices, Learned
 from placing.likelihoods import ScoringConfig
 from placing.scene_model import SceneModel, Settings
 from placing.seeds import generator
-from placing.tasks import questions
+from placing.tasks import TASKS, questions
 
 log = logging.getLogger(__name__)
 
 
 def main(
     dataset: str,
-    task: str,
     theta: Path,
     tuning: Path,
     scenes: Path,
     features: Path,
-    arrangements: Path,
-    likelihoods: Path,
-    poses: Path,
-    densities: Path,
-    traces: Path,
-    diagnoses: Path,
-    explanations: Path,
+    arrangements: tuple[Path, ...],
+    likelihoods: tuple[Path, ...],
+    poses: tuple[Path, ...],
+    densities: tuple[Path, ...],
+    traces: tuple[Path, ...],
+    diagnoses: tuple[Path, ...],
+    explanations: tuple[Path, ...],
     seed: int,
     settings: Settings,
     scoring: ScoringConfig,
 ) -> None:
-    """Arrange the objects of every scene of a fold with every method of a task.
+    """Arrange the scenes of a fold with every method; outputs are filled, then empty.
 
     Args:
         dataset: Data set of the scenes.
-        task: filled or empty.
         theta: Directory of what was learned without the fold.
         tuning: What the training scenes chose.
         scenes: Directory of the scenes of the fold.
         features: Directory of their features.
-        arrangements: Table to write: where every method puts every object.
-        likelihoods: Table to write: how likely it finds the labelled places.
-        poses: Table to write: the human poses sampled by `dp`, first chain.
-        densities: Directory to write: the densities of `dp` and `dp_object`.
-        traces: Table to write: every sweep of every chain of `dp`.
-        diagnoses: Table to write: whether the chains of a question agree.
-        explanations: Table to write: why `dp` and `dp_object` chose a place.
+        arrangements: Tables to write: where every method puts every object.
+        likelihoods: Tables to write: how likely it finds the labelled places.
+        poses: Tables to write: the human poses sampled by `dp`, first chain.
+        densities: Directories to write: the densities of `dp` and `dp_object`.
+        traces: Tables to write: every sweep of every chain of `dp`.
+        diagnoses: Tables to write: whether the chains of a question agree.
+        explanations: Tables to write: why `dp` and `dp_object` chose a place.
         seed: Root of all random streams.
         settings: Sections of the configuration that answering looks at.
         scoring: How densities are scored.
     """
     learned = read_learned(theta)
-    choices, ranks = read_tuning(tuning, task)
-    sheets = Sheets(scoring, ranks[task])
+    choices, ranks = zip(*(read_tuning(tuning, task) for task in TASKS), strict=True)
+    sheets = [Sheets(scoring, r[task]) for task, r in zip(TASKS, ranks, strict=True)]
+    stream = partial(named, seed, dataset)
     for path in tqdm(sorted(scenes.glob("*.json")), unit="scene", disable=None):
-        scene = read_scene(path)
-        candidates, valid = read_features(features / f"{scene.scene}.npz")
-        model = SceneModel(scene, candidates, valid, learned, settings)
-        kept = {}
-        for question in questions(scene, task):
-            names = (dataset, scene.scene, task)
-            stream = partial(named, seed, names, question.name)
-            kept |= sheets.fill(task, Asked(stream, model, question, choices))
-        write_densities(densities / f"{scene.scene}.npz", kept)
-    write_table(arrangements, sheets.table("arrangements"))
-    write_table(likelihoods, sheets.table("likelihoods"))
-    write_table(poses, sheets.table("poses"))
-    write_table(traces, sheets.table("traces"))
-    write_table(diagnoses, sheets.table("diagnoses"))
-    write_table(explanations, sheets.table("explanations"))
-    log.info("%s %s: %d objects placed", dataset, task, sheets.n_placed())
+        model = read_model(path, features, learned, settings)
+        for task in range(len(TASKS)):
+            kept = fill(sheets[task], model, TASKS[task], choices[task], stream)
+            write_densities(densities[task] / f"{path.stem}.npz", kept)
+    outputs = arrangements, likelihoods, poses, traces, diagnoses, explanations
+    write(sheets, dict(zip(COLUMNS, outputs, strict=True)))
+    log.info("%s: %d objects placed", dataset, sum(s.n_placed() for s in sheets))
 
 
-def named(seed: int, names: tuple[str, ...], question: str, method: str) -> Generator:
+def read_model(
+    path: Path, features: Path, learned: Learned, settings: Settings
+) -> SceneModel:
+    """Return a scene with what a fold has learned."""
+    scene = read_scene(path)
+    candidates, valid = read_features(features / f"{scene.scene}.npz")
+    return SceneModel(scene, candidates, valid, learned, settings)
+
+
+def fill(
+    sheets: Sheets, model: SceneModel, task: str, choices: Choices, stream: partial
+) -> dict[str, NDArray[np.float64]]:
+    """Answer all questions of a task about a scene; return the densities to keep."""
+    kept = {}
+    for question in questions(model.scene, task):
+        of_question = partial(stream, model.scene.scene, task, question.name)
+        asked = Asked(of_question, model, question, choices)
+        kept |= sheets.fill(task, asked)
+    return kept
+
+
+def write(sheets: Sequence[Sheets], outputs: Mapping[str, Sequence[Path]]) -> None:
+    """Write every table of every task."""
+    for name, paths in outputs.items():
+        for of_task, path in zip(sheets, paths, strict=True):
+            write_table(path, of_task.table(name))
+
+
+def named(
+    seed: int, dataset: str, scene: str, task: str, question: str, method: str
+) -> Generator:
     """Return the stream of a method that answers a question."""
-    return generator(seed, "sample_arrangement", *names, method, question)
+    names = dataset, scene, task, method, question
+    return generator(seed, "sample_arrangement", *names)
 
 
 if __name__ == "__main__":
