@@ -11,12 +11,12 @@ import pandas as pd
 from command import run
 from placing.artifacts.formats import read_json, read_table
 from placing.errors import BadArtifact
+from placing.explanation import EXPLANATION_COLUMNS
 from placing.metrics import ERRORS, SCORE_COLUMNS
 
 log = logging.getLogger(__name__)
 
 TASKS = ("filled", "empty")
-METHODS = ("dp", "height", "room")
 MIN_SUPPORTED = 0.95
 """Share of the objects of designers' rooms that rest on a placing area, at least."""
 MOST_LINES = 20
@@ -96,17 +96,24 @@ def unplaced_objects_have_no_error(results: Path, folds: Folds) -> Iterator[str]
         yield f"{row.scene} {row.task} {row.method} {row.object}: {row.status}"
 
 
-def no_scene_is_arranged_by_what_was_learned_from_it(
+def nothing_is_learned_from_scenes_that_are_held_out(
     results: Path, folds: Folds
 ) -> Iterator[str]:
-    """Yield the scenes that a fold learned from although they are of that fold."""
-    for fold in sorted(set(folds.values())):
-        for method in METHODS:
-            path = results / "theta" / f"fold{fold}" / f"{method}.json"
-            training = read_json(path)["training_scenes"]
-            own = [scene for scene in training if folds.get(scene) in (None, fold)]
-            for scene in own:
-                yield f"{path} learned from {scene}"
+    """Yield what was learned from a scene of a fold that is held out."""
+    for folder in sorted((results / "theta").glob("fold*")):
+        held_out = {int(name.removeprefix("fold")) for name in folder.name.split("_")}
+        for path in sorted(folder.glob("*.json")):
+            for scene in read_json(path)["training_scenes"]:
+                if folds.get(scene) in held_out | {None}:
+                    yield f"{path} learned from {scene}"
+
+
+def terms_of_explanations_are_finite(results: Path, folds: Folds) -> Iterator[str]:
+    """Yield the explained objects with a term that is no number."""
+    for path in sorted((results / "explanations").glob("*/*.parquet")):
+        table = read_table(path, EXPLANATION_COLUMNS)
+        for row in table[~np.isfinite(table["value"])].itertuples():
+            yield f"{path}: {row.scene} {row.object}: {row.term}"
 
 
 def every_scene_has_recordings(results: Path, folds: Folds) -> Iterator[str]:
@@ -136,7 +143,8 @@ CLAIMS: tuple[Callable[[Path, Folds], Iterator[str]], ...] = (
     every_scene_is_scored_in_both_tasks,
     errors_are_lengths,
     unplaced_objects_have_no_error,
-    no_scene_is_arranged_by_what_was_learned_from_it,
+    nothing_is_learned_from_scenes_that_are_held_out,
+    terms_of_explanations_are_finite,
     every_scene_has_recordings,
     designers_objects_are_supported,
 )
