@@ -99,13 +99,17 @@ rule sample_arrangement:
         scenes="results/{dataset}/scenes/fold{fold}",
         features="results/{dataset}/features/fold{fold}",
     output:
-        arrangements=of_tasks("results/{dataset}/arrangements/{task}/fold{fold}.parquet"),
+        arrangements=of_tasks(
+            "results/{dataset}/arrangements/{task}/fold{fold}.parquet"
+        ),
         likelihoods=of_tasks("results/{dataset}/likelihoods/{task}/fold{fold}.parquet"),
         poses=of_tasks("results/{dataset}/poses/{task}/fold{fold}.parquet"),
         densities=directory(of_tasks("results/{dataset}/densities/{task}/fold{fold}")),
         traces=of_tasks("results/{dataset}/traces/{task}/fold{fold}.parquet"),
         diagnoses=of_tasks("results/{dataset}/diagnostics/{task}/fold{fold}.parquet"),
-        explanations=of_tasks("results/{dataset}/explanations/{task}/fold{fold}.parquet"),
+        explanations=of_tasks(
+            "results/{dataset}/explanations/{task}/fold{fold}.parquet"
+        ),
     log:
         "results/logs/sample_arrangement/{dataset}/fold{fold}.log",
     benchmark:

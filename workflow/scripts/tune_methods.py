@@ -59,8 +59,9 @@ def main(
     rows = []
     folders = list(zip(theta, scenes, features, strict=True))
     each = -(-tuning.max_scenes // len(folders))
-    for folder in tqdm(folders, unit="fold", disable=None):
-        for turn, model in enumerate(models(*folder, each, settings)):
+    for i, folder in enumerate(tqdm(folders, unit="fold", disable=None)):
+        found = models(*folder, each, i / len(folders), settings)
+        for turn, model in enumerate(found):
             for task in TASKS:
                 for question in asked_of(model, task, turn):
                     names = (dataset, str(fold), model.scene.scene, task, question.name)
@@ -73,12 +74,24 @@ def main(
 
 
 def models(
-    theta: Path, scenes: Path, features: Path, n_scenes: int, settings: Settings
+    theta: Path,
+    scenes: Path,
+    features: Path,
+    n_scenes: int,
+    start: float,
+    settings: Settings,
 ) -> Iterator[SceneModel]:
-    """Yield `n_scenes` labelled scenes of a fold, evenly spread over their names."""
+    """Yield `n_scenes` labelled scenes of a fold, evenly spread over their names.
+
+    Names sort scenes by kind: folds that begin at another `start` (0 to 1) of a step
+    do not all show the same kinds.
+    """
     learned = read_learned(theta)
     paths = sorted(scenes.glob("*.json"))
-    for path in paths[:: max(1, len(paths) // n_scenes)][:n_scenes]:
+    step = len(paths) / min(n_scenes, len(paths))
+    for path in [
+        paths[int((k + start) * step)] for k in range(round(len(paths) / step))
+    ]:
         scene = read_scene(path)
         candidates, valid = read_features(features / f"{scene.scene}.npz")
         if scene.arrangements and len(candidates.location):
