@@ -10,7 +10,7 @@ from placing.offsets import find_spots
 from placing.potential import Theta
 
 SAMPLING = DpmmConfig("exact_birth", 1.0, 8, 1, 0, 1)
-CONFIG = LearningConfig(30, 5, 5, 100, 1)
+CONFIG = LearningConfig(30, 5, 5, 100, 3)
 FITTING = FittingConfig(0.5, 50.0, 0.05, 0.02)
 TRUE = {
     "cup": Theta(np.log(0.5), 0.25, 0.6, 6.0, -0.25, 0.08, np.pi, 4.0),
