@@ -64,7 +64,7 @@ def start(project, *words, **environment):
 def run(project, *words, **environment):
     """Return code, stdout and stderr of `./run`."""
     process = start(project, *words, **environment)
-    out, err = process.communicate(timeout=60)
+    out, err = process.communicate(timeout=240)
     return process.returncode, out, err
 
 
@@ -159,7 +159,7 @@ def test_an_interrupted_installation_is_begun_again(project, number):
     while not (project.parent / "bin" / "log.started").exists():
         time.sleep(0.01)
     os.killpg(process.pid, number)
-    process.communicate(timeout=60)
+    process.communicate(timeout=240)
     assert process.returncode != 0
     assert not (project / ".venv").exists()
     assert run(project, "echo", "ran")[:2] == (0, "ran\n")
@@ -167,7 +167,7 @@ def test_an_interrupted_installation_is_begun_again(project, number):
 
 def test_two_at_once_make_one_environment(project):
     both = [start(project, "echo", "ran", UV_SECONDS="0.5") for _ in range(2)]
-    ended = [process.communicate(timeout=60) for process in both]
+    ended = [process.communicate(timeout=240) for process in both]
     assert [out for out, _ in ended] == ["ran\n", "ran\n"]
     assert installs(project) == 1
     assert any("waiting for another ./run" in err for _, err in ended)
