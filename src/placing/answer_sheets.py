@@ -14,7 +14,7 @@ from placing.answer_tables import (
     pose_rows,
     trace_rows,
 )
-from placing.answering import METHODS, Answer, Asked
+from placing.answering import Answer, Asked
 from placing.diagnostics import DIAGNOSTIC_COLUMNS, diagnosis_row
 from placing.explanation import EXPLANATION_COLUMNS
 from placing.inspecting import reasons_of, region_areas_of
@@ -25,6 +25,7 @@ from placing.likelihoods import (
     likelihood_rows,
     with_uniform,
 )
+from placing.methods import METHODS
 
 Array = NDArray[np.float64]
 
@@ -83,10 +84,9 @@ class Sheets:
         areas = region_areas_of(mixed, self._ranks[method], spacing_m)
         args = scene, task, method, question
         self._rows["arrangements"] += placement_rows(*args, answer, areas)
-        found = asked.model.nearest, question, answer.densities, spacing_m
+        found = asked.model.nearest, question, mixed, spacing_m
         key = scene, task, method, question.name
-        likely = [(*key, *row) for row in likelihood_rows(*found, self._scoring)]
-        self._rows["likelihoods"] += likely
+        self._rows["likelihoods"] += [(*key, *row) for row in likelihood_rows(*found)]
         people = answer.people
         if people is None or people.diagnosis is None:
             return

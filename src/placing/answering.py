@@ -17,25 +17,14 @@ from numpy.typing import NDArray
 from placing import rigid
 from placing.candidates import is_unoccupied
 from placing.decision import choose_places
-from placing.hallucinating import (
-    HUMAN_METHODS,
-    People,
-    categories_of,
-    hallucinate,
-    random_people,
-)
+from placing.hallucinating import People, hallucinate, random_people
 from placing.learned import Choices, theta_name
+from placing.methods import HUMAN_METHODS
 from placing.scene import Placement, SceneObject
 from placing.scene_model import SceneModel
 from placing.tasks import Question
 
 Array = NDArray[np.float64]
-
-METHODS = (
-    *("chance", "height", "room", "area", "random_human"),
-    *("object", "fmm", "dp", "dp_object"),
-)
-
 
 NO_PLACE = "no place fits"
 NO_POSE = "no valid human pose: chance"
@@ -98,8 +87,8 @@ class Asked:
         rng = self._stream(method)
         people = self.people(rng, method)
         chosen, densities = [], {}
-        for category in categories_of(self.question):
-            items = [i for i in self.question.wanted if i.category == category]
+        for category in self.question.categories:
+            items = self.question.of_category(category)
             allowed = [self.allowed[item.object_id] for item in items]
             density, smooth = self.density(rng, method, category)
             densities[category] = self.fitting(category, density)
@@ -114,7 +103,7 @@ class Asked:
 
     def fitting(self, category: str, density: Array) -> Array:
         """Return a density without places that fit no object of a category, (p,)."""
-        items = [i for i in self.question.wanted if i.category == category]
+        items = self.question.of_category(category)
         allowed = np.any([self.allowed[item.object_id] for item in items], axis=0)
         left = np.where(allowed, density, 0.0)
         return left / max(left.sum(), 1e-300)  # guards a scene without such a place

@@ -25,13 +25,11 @@ from placing.correlation import (
     spread_runs,
     sum_blocks,
 )
-from placing.lattice import ArrangingConfig, Lattice
+from placing.lattice import Lattice
 from placing.potential import Theta, height_factor, log_psi_ori, planar_table
 
 Array = NDArray[np.float64]
 
-MANY_SITES = 1000
-"""With more sites of poses, transforms are faster than adding up site by site."""
 TINY = 1e-300
 """Guards divisions by the Z of a pose, or the sum of a density, that is zero."""
 MANY_SITES = 1000
@@ -47,16 +45,9 @@ to the number of places per place of the coarse lattice."""
 class UseOfObject:
     """Psi_loc of one category between the places and the human poses of a scene."""
 
-    def __init__(
-        self,
-        theta: Theta,
-        lattice: Lattice,
-        half_height_m: float,
-        config: ArrangingConfig,
-    ) -> None:
+    def __init__(self, theta: Theta, lattice: Lattice, half_height_m: float) -> None:
         """Compute the height factor; `half_height_m` lifts the object's centre."""
         self.theta, self.lattice, self.half_height_m = theta, lattice, half_height_m
-        self._config = config
         self._height = height_factor(
             theta, lattice.levels + half_height_m, lattice.references
         )  # (levels, references)
@@ -116,7 +107,7 @@ class UseOfObject:
         largest = float(self._table().max()) * self._height.max(initial=0.0)
         loudest = value.max(initial=0.0) * largest
         factors = separate(self._height, ERROR / max(loudest, ERROR))
-        radius_m, n_headings = self._config.radius_m, lattice.n_headings
+        radius_m, n_headings = lattice.config.radius_m, lattice.n_headings
         key = lattice.spacing_m, lattice.stride, radius_m, n_headings
         kernel = kernel_transform(self.theta, *key, lattice.size)
         found = spread(lattice, kernel, factors, value)
@@ -186,12 +177,12 @@ class UseOfObject:
     def _table(self) -> NDArray[np.float32]:
         """Return the planar part of Psi_loc on the fine lattice."""
         lattice = self.lattice
-        key = lattice.spacing_m, self._config.radius_m, lattice.n_headings
+        key = lattice.spacing_m, lattice.config.radius_m, lattice.n_headings
         return planar_table(self.theta, *key)
 
     def _sums(self) -> Array:
         """Return the cumulative planar part of Psi_loc on the coarse lattice."""
-        config, n_headings = self._config, self.lattice.n_headings
+        config, n_headings = self.lattice.config, self.lattice.n_headings
         key = config.row_spacing_m, config.radius_m, n_headings
         return cumulative_table(self.theta, *key)
 

@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from placing.answer_tables import REGION_COLUMNS
 from placing.errors import BadArtifact, BadInput, unknown
 from placing.regions import REGION_LEVELS, TOLERANCE, calibrate
 
@@ -22,7 +23,7 @@ Ranks = Mapping[str, Mapping[str, Array]]
 
 LEVELS = np.arange(1, 20) / 20
 """Stated probabilities at which coverage is measured."""
-AREA_COLUMNS = {level: f"area_{100 * level:.0f}_m2" for level in REGION_LEVELS}
+AREA_COLUMNS = dict(zip(REGION_LEVELS, REGION_COLUMNS, strict=True))
 """Columns of the arrangements that hold the areas of regions, by level."""
 
 

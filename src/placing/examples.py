@@ -10,8 +10,9 @@ from placing.baselines import place_features
 from placing.candidates import Candidates
 from placing.human import HumanPoses
 from placing.learning import Example
+from placing.likelihoods import Nearest
 from placing.offsets import find_spots
-from placing.scene import Scene, resting_point
+from placing.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -39,20 +40,18 @@ def examples_of(scene: Scene, poses: HumanPoses) -> list[Example]:
 
 
 def baseline_values(
-    training: Sequence[tuple[Scene, Candidates]], method: str
+    training: Sequence[tuple[Scene, Candidates, Nearest]], method: str
 ) -> dict[str, Array]:
     """Return the features of a baseline where labelled objects rest, by category.
 
-    The features are those of the place nearest to the object, (n, f) per category.
+    Each training scene comes with its places and `nearest_places`; the features are
+    those of the place nearest to the object, (n, f) per category.
     """
     values: dict[str, list[Array]] = {}
-    for scene, candidates in training:
-        items = {item.object_id: item for item in scene.objects}
+    for scene, candidates, nearest in training:
+        category = {item.object_id: item.category for item in scene.objects}
         table = place_features(candidates, method)
-        for arrangement in scene.arrangements:
-            for placement in arrangement.placements:
-                item = items[placement.object_id]
-                offset = candidates.location - resting_point(item, placement)
-                nearest = int(np.argmin((offset**2).sum(1)))
-                values.setdefault(item.category, []).append(table[nearest])
+        for places in nearest.values():
+            for name, place in places.items():
+                values.setdefault(category[name], []).append(table[place])
     return {name: np.array(values[name]) for name in sorted(values)}

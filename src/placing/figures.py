@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from placing.artifacts.atomic import replacing
 from placing.errors import BadInput, unknown
-from placing.metrics import AVERAGE, LABELS
+from placing.methods import LABELS
+from placing.metrics import AVERAGE
 
 Array = NDArray[np.float64]
 

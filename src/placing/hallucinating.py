@@ -18,9 +18,6 @@ from placing.tasks import Question
 
 Array = NDArray[np.float64]
 
-HUMAN_METHODS = ("random_human", "fmm", "dp", "dp_object")
-"""The methods whose density goes through human poses."""
-
 
 @dataclass(frozen=True)
 class People:
@@ -44,7 +41,7 @@ class People:
 def random_people(model: SceneModel, question: Question) -> People:
     """Return people drawn from P0, whatever objects there are."""
     prior = model.poses.prior
-    weight = dict.fromkeys(categories_of(question), prior)
+    weight = dict.fromkeys(question.categories, prior)
     return People("dp", weight, dict.fromkeys(weight, 0.0), weight, None, None)
 
 
@@ -58,6 +55,7 @@ def hallucinate(
     disagree are run again, longer; what still disagrees is kept with its diagnosis.
     """
     theta = theta_name("fmm" if n_components else "dp", n_components)
+    rows = _rows(model, question, theta)
     config, gates = model.settings.sampling, model.settings.diagnostics
     for doubling in range(gates.n_doublings + 1):
         longer = replace(
@@ -65,10 +63,17 @@ def hallucinate(
             n_burn_in=config.n_burn_in * 2**doubling,
             n_samples=config.n_samples * 2**doubling,
         )
-        people = _run_chains(rng, model, question, theta, n_components, longer)
+        people = _run_chains(rng, model, question, theta, rows, n_components, longer)
         if people.diagnosis is None or people.diagnosis.is_mixed(gates):
             break
     return people
+
+
+def _rows(model: SceneModel, question: Question, theta: str) -> NDArray[np.float32]:
+    """Return the weight of every pose for each object of a question, shape (n, q)."""
+    rows = [model.given_row(theta, question.labels, p) for p in question.given]
+    rows += [model.wanted_row(theta, item.category) for item in question.wanted]
+    return np.stack(rows)
 
 
 def _run_chains(
@@ -76,16 +81,15 @@ def _run_chains(
     model: SceneModel,
     question: Question,
     theta: str,
+    rows: NDArray[np.float32],
     n_components: int,
     config: dpmm.DpmmConfig,
 ) -> People:
     """Return people sampled with chains of one length."""
-    names = categories_of(question)
-    rows = [model.given_row(theta, question.labels, p) for p in question.given]
-    rows += [model.wanted_row(theta, item.category) for item in question.wanted]
+    names = question.categories
     slots = [-1] * len(question.given)
     slots += [names.index(item.category) for item in question.wanted]
-    args = np.stack(rows), model.poses.prior, config, np.array(slots)
+    args = rows, model.poses.prior, config, np.array(slots)
     chains = dpmm.sample(rng, *args, n_components)
     seen, p_new, weight, histograms = {}, {}, {}, []
     for slot, name in enumerate(names):
@@ -95,8 +99,3 @@ def _run_chains(
         histograms.append(use.histograms(of_slot[:, :-1], of_slot[:, -1]))
     diagnosis = diagnose(chains, histograms) if config.n_chains > 1 else None
     return People(theta, seen, p_new, weight, chains, diagnosis)
-
-
-def categories_of(question: Question) -> list[str]:
-    """Return the wanted categories, sorted."""
-    return sorted({item.category for item in question.wanted})

@@ -2,15 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from placing.object_context import Relations
 from placing.potential import Theta
-
-if TYPE_CHECKING:
-    from placing.object_context import Relations
 
 Array = NDArray[np.float64]
 
@@ -33,7 +30,7 @@ class Learned:
     """Theta per category, for `dp` and for `fmm<K>` of every K tried."""
     histograms: Mapping[str, Mapping[str, Array]]
     """Per baseline and category."""
-    relations: "Relations"
+    relations: Relations
     """The object context: where objects of a category lie beside others."""
 
 

@@ -34,21 +34,21 @@ class ScoringConfig:
 def likelihood_rows(
     nearest: Nearest,
     question: Question,
-    densities: Mapping[str, Array],
+    mixed: Mapping[str, Array],
     spacing_m: float,
-    config: ScoringConfig,
 ) -> Iterator[tuple[str, str, str, float, float]]:
     """Yield labels, object, category, nll and rank of every labelled object.
 
-    `densities` (p,) per wanted category; nll is in nats, of a density per square metre
-    of placing area. An empty scene is compared with every labelled arrangement.
+    `mixed` densities (p,) per wanted category, see `with_uniform`; nll is in nats, of a
+    density per square metre of placing area. An empty scene is compared with every
+    labelled arrangement.
     """
     labels = [question.labels] if question.labels else list(nearest)
-    for category, density in densities.items():
-        wanted = [i.object_id for i in question.wanted if i.category == category]
+    for category, density in mixed.items():
+        wanted = [item.object_id for item in question.of_category(category)]
         names = [(of, name) for of in labels for name in wanted]
         at = [nearest[of][name] for of, name in names]
-        values = fit(with_uniform(density, config), at, spacing_m)
+        values = fit(density, at, spacing_m)
         for (of, name), (nll, rank) in zip(names, values, strict=True):
             yield of, name, category, float(nll), float(rank)
 

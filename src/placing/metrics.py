@@ -19,13 +19,6 @@ from placing.matching import match
 
 Array = NDArray[np.float64]
 
-LABELS = "labels"
-"""The method that answers with another labelled arrangement."""
-METHODS = (
-    *("chance", "height", "room", "area", "random_human"),
-    *("object", "fmm", "dp", "dp_object", LABELS),
-)
-"""All methods in the order of tables and figures, that of the paper's Figure 6."""
 ERRORS = ("location_error_m", "location3d_error_m", "height_error_m")
 SCORE_COLUMNS = (
     *("dataset", "task", "method", "scene", "labels", "object", "category"),

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from placing import rigid
 from placing.candidates import Candidates
 from placing.fitting import FittingConfig, expected_statistics, fit
-from placing.pair_statistics import pair_sums
+from placing.pair_statistics import NO_PAIRS, pair_sums
 from placing.potential import MIN_DISTANCE_M, Theta
 from placing.scene import Arrangement, Placement, Scene, SceneObject
 
@@ -91,31 +91,12 @@ def learn_relations(
     for scene, arrangement in arrangements:
         weight = 1 / names.count(scene.scene)
         for key, statistics in _sums(scene, arrangement).items():
-            sums[key] = sums.get(key, np.zeros(10)) + weight * statistics
-    common = _fit(sum(sums.values(), np.zeros(10)), BROAD_RELATION, config)
+            sums[key] = sums.get(key, NO_PAIRS) + weight * statistics
+    common = _fit(sum(sums.values(), NO_PAIRS), BROAD_RELATION, config)
     pairs: dict[str, dict[str, Theta]] = {}
     for (wanted, given), total in sorted(sums.items()):
         pairs.setdefault(wanted, {})[given] = _fit(total, common, config)
     return Relations(common, pairs, config.sharpness)
-
-
-def relation_density(
-    relations: Relations,
-    category: str,
-    given: Sequence[Given],
-    candidates: Candidates,
-    half_height_m: float,
-) -> Array:
-    """Return the density of a category over the places, shape (p,), sum 1.
-
-    `half_height_m` lifts the centre of the object above its place. The density is
-    uniform where nothing is given.
-    """
-    parts = [
-        pair_density(relations, category, one, candidates, half_height_m)
-        for one in given
-    ]
-    return mix(parts, len(candidates.location), relations.sharpness)
 
 
 def pair_density(

@@ -16,8 +16,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from placing.dpmm import MIN_WEIGHT
-from placing.potential import MIN_DISTANCE_M, Theta
-from placing.potential import log_constants as log_constants
+from placing.potential import MIN_DISTANCE_M, Theta, log_constants
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

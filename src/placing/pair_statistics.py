@@ -8,9 +8,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from placing.fitting import STATISTICS
 from placing.potential import MIN_DISTANCE_M
 
 Array = NDArray[np.float64]
+
+NO_PAIRS = np.zeros(len(STATISTICS))
+"""The sums of `fitting.STATISTICS` over no pair at all."""
 
 
 def pair_sums(
@@ -31,7 +35,7 @@ def pair_sums(
             if j != i:
                 nearest.setdefault(categories[j], j)
         for given, j in nearest.items():
-            total = sums.get((wanted, given), np.zeros(10))
+            total = sums.get((wanted, given), NO_PAIRS)
             sums[wanted, given] = total + table[i, j]
     return sums
 

@@ -83,8 +83,3 @@ def region_areas(density: Array, thresholds: Array, spacing_m: float) -> Array:
     first = np.searchsorted(-falling, -following, side="left")
     n = np.where(limits >= 1, len(falling), np.minimum(n, first))
     return n * spacing_m**2
-
-
-def region_area(density: Array, threshold: float, spacing_m: float) -> float:
-    """Return the area of the region of a threshold in m²."""
-    return float(region_areas(density, np.array([threshold]), spacing_m)[0])

@@ -5,7 +5,8 @@ from pathlib import Path
 import pandas as pd
 
 from placing.artifacts.atomic import replacing
-from placing.metrics import AVERAGE, METHODS, SE_OF
+from placing.methods import ORDER
+from placing.metrics import AVERAGE, SE_OF
 
 DATA = {
     "rooms": "Data set `rooms`: 20 rooms, 47 objects and four arrangements of each "
@@ -18,7 +19,6 @@ DATA = {
     "scenes.",
 }
 TITLES = {"filled": "Arranging filled rooms", "empty": "Arranging empty rooms"}
-ORDER = METHODS
 NOTE = (
     "Location is the horizontal error, height the vertical one, both in metres, and "
     "orientation the angle between the headings, in degrees, of objects that have a "
@@ -84,7 +84,7 @@ def averages_by_task(figure6: pd.DataFrame) -> str:
 
 def in_order(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the rows in the order of the methods."""
-    at = {method: number for number, method in enumerate(METHODS)}
+    at = {method: number for number, method in enumerate(ORDER)}
     return rows.sort_values("method", key=lambda names: names.map(at), kind="stable")
 
 
@@ -143,7 +143,7 @@ def _by_category(
     figure6: pd.DataFrame, column: str, digits: int, paper: pd.Series
 ) -> str:
     """Return the table of one error by category and method, the paper's beside."""
-    methods = [m for m in METHODS if m in set(figure6["method"])]
+    methods = [m for m in ORDER if m in set(figure6["method"])]
     heads = ["category", "n", *(f"`{method}`" for method in methods), "*paper*"]
     lines = [row_of(heads), "|:-|" + "-:|" * (len(heads) - 1)]
     rows = {(row["category"], row["method"]): row for _, row in figure6.iterrows()}

@@ -78,10 +78,7 @@ class SceneModel:
         """Return how people use a category here, under the Theta of that name."""
         if (theta, category) not in self._uses:
             self._uses[theta, category] = UseOfObject(
-                self.theta(theta, category),
-                self._lattice,
-                self._half_height(category),
-                self.settings.arranging,
+                self.theta(theta, category), self._lattice, self._half_height(category)
             )
         return self._uses[theta, category]
 

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from placing import rigid
 from placing.answer_tables import LOCATION, NO_PLACE, ORIENTATION, PLACED
-from placing.metrics import ERRORS, LABELS, distances, match_locations
+from placing.methods import LABELS
+from placing.metrics import ERRORS, distances, match_locations
 from placing.scene import Scene
 
 Array = NDArray[np.float64]

@@ -24,6 +24,15 @@ class Question:
     given: tuple[Placement, ...]
     wanted: tuple[SceneObject, ...]
 
+    @property
+    def categories(self) -> list[str]:
+        """The wanted categories, sorted."""
+        return sorted({item.category for item in self.wanted})
+
+    def of_category(self, category: str) -> list[SceneObject]:
+        """Return the wanted objects of a category."""
+        return [item for item in self.wanted if item.category == category]
+
 
 def questions(scene: Scene, task: str) -> list[Question]:
     """Return the questions of a task about a scene."""

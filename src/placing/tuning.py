@@ -15,10 +15,10 @@ import pandas as pd
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from placing.answering import METHODS, Asked
-from placing.hallucinating import categories_of
+from placing.answering import Asked
 from placing.learned import Choices
-from placing.likelihoods import ScoringConfig, likelihood_rows
+from placing.likelihoods import ScoringConfig, likelihood_rows, with_uniform
+from placing.methods import METHODS
 from placing.scene_model import SceneModel
 from placing.tasks import Question, questions
 
@@ -46,11 +46,8 @@ class TuningConfig:
 def asked_of(model: SceneModel, task: str, turn: int) -> list[Question]:
     """Return the questions of a scene filled by one labelled arrangement, in turn."""
     labels = [a.name for a in model.scene.arrangements]
-    return [
-        question
-        for question in questions(model.scene, task)
-        if question.labels in ("", labels[turn % len(labels)])
-    ]
+    chosen = ("", labels[turn % len(labels)]) if labels else ("",)
+    return [q for q in questions(model.scene, task) if q.labels in chosen]
 
 
 def try_variants(
@@ -64,7 +61,8 @@ def try_variants(
     """Yield the nll and rank of each labelled object under everything tried."""
     spacing_m = model.settings.candidates.spacing_m
     for method, variant, densities in _densities(stream, model, question, config):
-        args = model.nearest, question, densities, spacing_m, scoring
+        mixed = {c: with_uniform(d, scoring) for c, d in densities.items()}
+        args = model.nearest, question, mixed, spacing_m
         for _, name, category, nll, rank in likelihood_rows(*args):
             row = (model.scene.scene, task, method, variant, category, name)
             yield (*row, nll, rank)
@@ -128,7 +126,7 @@ def _whole(
     asked: Asked, stream: Callable[[str], Generator], method: str
 ) -> dict[str, Array]:
     """Return the density of a method over all places per category."""
-    names = categories_of(asked.question)
+    names = asked.question.categories
     return {name: asked.density(stream(method), method, name)[0] for name in names}
 
 

@@ -12,11 +12,9 @@ from numpy.typing import NDArray
 from placing.candidates import Candidates
 from placing.human import HumanPoses, prior_of
 from placing.scene_model import Settings
+from placing.sensitivity import BASE
 
 Array = NDArray[np.float64]
-
-BASE = "base"
-"""The settings of the study."""
 
 
 @dataclass(frozen=True)

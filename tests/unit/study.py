@@ -15,6 +15,7 @@ from placing.human import HumanPoses
 from placing.lattice import ArrangingConfig
 from placing.learned import Learned
 from placing.learning import LearningConfig, learn_theta
+from placing.likelihoods import nearest_places
 from placing.object_context import ObjectContextConfig, learn_relations
 from placing.places import find_candidates
 from placing.scene import Arrangement, Placement, PlacingArea, Scene, SceneObject
@@ -99,9 +100,10 @@ def study_model() -> SceneModel:
     fitting = FittingConfig(0.2, 50.0, 0.1, 0.05)
     examples = [examples_of(scene, poses)]
     thetas, _ = learn_theta(rng, examples, SETTINGS.sampling, config, fitting)
+    placed = [(scene, candidates, nearest_places(scene, candidates.location))]
     histograms = {
         method: learn_histograms(
-            baseline_values([(scene, candidates)], method), method, SETTINGS.baselines
+            baseline_values(placed, method), method, SETTINGS.baselines
         )
         for method in FEATURES_OF
     }

@@ -7,12 +7,13 @@ import pytest
 from study import study_model
 
 from placing.answer_sheets import COLUMNS, EXPLAINED, Sheets
-from placing.answering import METHODS, Asked
+from placing.answering import Asked
 from placing.artifacts.formats import write_json
 from placing.artifacts.tuning import read_tuning
 from placing.errors import BadArtifact
 from placing.learned import Choices
 from placing.likelihoods import ScoringConfig
+from placing.methods import METHODS
 from placing.seeds import generator
 from placing.tasks import questions
 

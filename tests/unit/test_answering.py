@@ -8,9 +8,10 @@ import pytest
 from study import SETTINGS, study_model
 
 from placing import dpmm
-from placing.answering import METHODS, NO_EXAMPLE, NO_PLACE, NO_POSE, Asked
+from placing.answering import NO_EXAMPLE, NO_PLACE, NO_POSE, Asked
 from placing.fitting import BROAD
 from placing.learned import Choices, Learned
+from placing.methods import METHODS
 from placing.scene_model import SceneModel
 from placing.seeds import generator
 from placing.tasks import questions

@@ -40,7 +40,7 @@ def scene(request):
 
 def use_of(scene, row_spacing_m=0.1, radius_m=5.0, theta=THETA):
     config = ArrangingConfig(radius_m, row_spacing_m)
-    return UseOfObject(theta, Lattice(*scene, 0.05, config), HALF_HEIGHT, config)
+    return UseOfObject(theta, Lattice(*scene, 0.05, config), HALF_HEIGHT)
 
 
 def direct(scene, radius_m=5.0, theta=THETA):

@@ -41,7 +41,7 @@ def random_case(seed):
     place = np.column_stack([rng.integers(0, 30, (50, 2)) * 0.1, np.full(50, 0.45)])
     kind, yaw = rng.integers(0, 6, 50).astype(np.uint8), YAWS[np.arange(50) % 8]
     poses = HumanPoses(kind, place, yaw, np.full(50, 1 / 50))
-    use = UseOfObject(THETA, Lattice(candidates, poses, 0.05, CONFIG), 0.1, CONFIG)
+    use = UseOfObject(THETA, Lattice(candidates, poses, 0.05, CONFIG), 0.1)
     weight = rng.dirichlet(np.full(50, 0.3))
     density = use.density(weight)
     smooth = density * rng.uniform(0.5, 2, 200)
@@ -141,7 +141,7 @@ def one_person(places, kind="standing", theta=THETA):
     poses = HumanPoses(
         np.uint8([KINDS.index(kind)]), np.zeros((1, 3)), np.zeros(1), np.ones(1)
     )
-    use = UseOfObject(theta, Lattice(candidates, poses, 0.05, CONFIG), 0.1, CONFIG)
+    use = UseOfObject(theta, Lattice(candidates, poses, 0.05, CONFIG), 0.1)
     density = use.density(np.ones(1))
     field = Field(density, density, density, 1.0)
     is_fitting = np.ones(len(places), np.bool_)

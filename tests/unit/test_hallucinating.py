@@ -7,7 +7,7 @@ import pytest
 from study import SETTINGS, study_model
 
 from placing.diagnostics import DiagnosticsConfig
-from placing.hallucinating import categories_of, hallucinate, random_people
+from placing.hallucinating import hallucinate, random_people
 from placing.scene_model import SceneModel
 from placing.seeds import generator
 from placing.tasks import questions
@@ -56,7 +56,7 @@ def test_a_single_chain_has_no_diagnosis(model):
 def test_the_users_of_a_category_are_somewhere_with_certainty(model, task):
     for question in questions(model.scene, task):
         people = hallucinate(generator(0, "x"), model, question)
-        assert list(people.weight) == categories_of(question)
+        assert list(people.weight) == question.categories
         for name, weight in people.weight.items():
             assert weight.sum() == pytest.approx(1)
             assert weight.min() >= 0

@@ -32,8 +32,8 @@ def rows_of(parts, task, densities, share=0.01):
         for question in questions(scene, task)
         for labels, name, _, nll, rank in likelihood_rows(
             *(nearest, question),
-            {item.category: densities[item.category] for item in question.wanted},
-            *(SPACING_M, config),
+            {c: with_uniform(densities[c], config) for c in question.categories},
+            SPACING_M,
         )
     }
 

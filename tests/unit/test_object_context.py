@@ -18,7 +18,6 @@ from placing.object_context import (
     learn_relations,
     mix,
     pair_density,
-    relation_density,
 )
 from placing.potential import Theta
 from placing.scene import Arrangement, Placement, Scene, SceneObject
@@ -29,6 +28,13 @@ OTHER = Theta(0.5, 0.3, 2.0, 8.0, -0.3, 0.1, 0.0, 0.0)
 KEYBOARD = SceneObject("keyboard", "keyboard", "x", (0.15, 0.45, 0.03), 1, True, True)
 MOUSE = SceneObject("mouse", "mouse", "x", (0.1, 0.06, 0.04), 0.1, True, True)
 PEN = SceneObject("pen", "pen", "x", (0.01, 0.15, 0.01), 0.1, False, True)
+
+
+def density_of(relations, category, given, candidates, half_height_m):
+    """Return the density of a category over the places, with every relation anew."""
+    args = candidates, half_height_m
+    parts = [pair_density(relations, category, one, *args) for one in given]
+    return mix(parts, len(candidates.location), relations.sharpness)
 
 
 def places(n=400, seed=0):
@@ -112,33 +118,33 @@ def test_given_objects_are_mixed_by_what_they_say():
     ]
     weight = [np.exp(-1.5 * stats.entropy(part)) for part in parts]
     expected = np.average(parts, axis=0, weights=weight)
-    density = relation_density(relations, "mug", given, places(), 0.1)
+    density = density_of(relations, "mug", given, places(), 0.1)
     np.testing.assert_allclose(density, expected, rtol=1e-3, atol=1e-7)
     assert density.sum() == pytest.approx(1, abs=1e-12)
 
 
 def test_nothing_given_is_uniform(desks):
-    density = relation_density(desks, "mouse", [], places(), 0.02)
+    density = density_of(desks, "mouse", [], places(), 0.02)
     np.testing.assert_array_equal(density, np.full(400, 1 / 400))
 
 
 def test_no_places_have_an_empty_density(desks):
     given = [Given("keyboard", np.zeros(3), 0.0)]
     none = places(0)
-    assert relation_density(desks, "mouse", given, none, 0.02).shape == (0,)
-    assert relation_density(desks, "mouse", [], none, 0.02).shape == (0,)
+    assert density_of(desks, "mouse", given, none, 0.02).shape == (0,)
+    assert density_of(desks, "mouse", [], none, 0.02).shape == (0,)
 
 
 def test_a_far_object_leaves_a_density_that_sums_to_one(desks):
     given = [Given("keyboard", np.array([1e4, 0.0, 50.0]), 0.0)]
-    density = relation_density(desks, "mouse", given, places(), 0.02)
+    density = density_of(desks, "mouse", given, places(), 0.02)
     assert density.sum() == pytest.approx(1)
 
 
 def test_the_mouse_goes_to_the_right_of_the_user_of_a_keyboard(desks):
     candidates = places(4000)
     keyboard = Given("keyboard", np.array([0.5, 0.5, 0.715]), np.pi / 2)
-    density = relation_density(desks, "mouse", [keyboard], candidates, 0.02)
+    density = density_of(desks, "mouse", [keyboard], candidates, 0.02)
     best = candidates.location[np.argmax(density)]
     # The user is at +y and looks along -y: right of the user is -x.
     np.testing.assert_allclose(best, [0.2, 0.5, 0.7], atol=0.12)
@@ -253,8 +259,8 @@ def test_density_moves_with_the_room(desks):
     here = places()
     there = replace(here, location=moved(here.location, angle, shift))
     np.testing.assert_allclose(
-        relation_density(desks, "mouse", after, there, 0.02),
-        relation_density(desks, "mouse", given, here, 0.02),
+        density_of(desks, "mouse", after, there, 0.02),
+        density_of(desks, "mouse", given, here, 0.02),
         rtol=1e-3,
         atol=1e-7,
     )

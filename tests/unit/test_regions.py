@@ -25,7 +25,6 @@ from placing.regions import (
     calibrate,
     ranks_of,
     region,
-    region_area,
     region_areas,
 )
 
@@ -61,7 +60,7 @@ def test_the_area_of_a_region_counts_its_places():
     for density in (TIED, rng.dirichlet(np.ones(300)), rng.integers(0, 4, 300) / 450):
         counted = [region(density, t).sum() * 0.05**2 for t in thresholds]
         np.testing.assert_allclose(region_areas(density, thresholds, 0.05), counted)
-    assert region_area(TIED, 0.7, 0.5) == pytest.approx(2 * 0.25)
+    assert region_areas(TIED, np.array([0.7]), 0.5)[0] == pytest.approx(2 * 0.25)
 
 
 def test_a_uniform_density_has_no_region_but_everything():

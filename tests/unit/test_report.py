@@ -7,13 +7,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from placing.metrics import METHODS, SUMMARY_COLUMNS
+from placing.methods import ORDER
+from placing.metrics import SUMMARY_COLUMNS
 from placing.report import MARK, averages_by_task, figure6_markdown
 
 PAPER = Path(__file__).parents[2] / "config" / "paper.csv"
 
 
-def figure6(methods=METHODS, dataset="rooms"):
+def figure6(methods=ORDER, dataset="rooms"):
     """Return a table with another location in every cell."""
     keys = list(product([dataset], ("filled", "empty"), methods, ("book", "tv", "AVG")))
     table = pd.DataFrame(keys, columns=list(SUMMARY_COLUMNS[:4]))
@@ -74,7 +75,7 @@ def test_averages_name_data_set_task_and_method(paper):
     tables = pd.concat([figure6(), figure6(("chance", "dp"), "thor")])
     lines = averages_by_task(tables).splitlines()
     heads = [line.split("|")[1:4] for line in lines if line.startswith("| `")]
-    assert len(heads) == 2 * len(METHODS) + 2 * 2
+    assert len(heads) == 2 * len(ORDER) + 2 * 2
     assert [cell.strip() for cell in heads[0]] == ["`rooms`", "`filled`", "`chance`"]
     assert len({line.count("|") for line in lines if line.startswith("|")}) == 1
 

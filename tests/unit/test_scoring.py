@@ -9,7 +9,8 @@ from study import study
 
 from placing import rigid
 from placing.answer_tables import LOCATION, NO_PLACE, ORIENTATION, PLACED
-from placing.metrics import ERRORS, LABELS
+from placing.methods import LABELS
+from placing.metrics import ERRORS
 from placing.scoring import ANSWER_COLUMNS, score_scene
 from placing.tasks import questions
 

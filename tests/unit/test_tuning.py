@@ -7,9 +7,10 @@ import pandas as pd
 import pytest
 from study import study_model
 
-from placing.answering import METHODS, Asked
+from placing.answering import Asked
 from placing.learned import Choices
-from placing.likelihoods import ScoringConfig, likelihood_rows
+from placing.likelihoods import ScoringConfig, likelihood_rows, with_uniform
+from placing.methods import METHODS
 from placing.seeds import generator
 from placing.tuning import COLUMNS, TuningConfig, asked_of, choose, try_variants
 
@@ -50,7 +51,8 @@ def test_what_is_tried_is_what_the_method_would_answer(model, tried):
     of_category = tried[tried["category"] == question.wanted[0].category]
     for method, variant in (("fmm", "3"), ("dp_object", "0.75"), ("height", "")):
         densities = asked.answer(method).densities
-        args = model.nearest, question, densities, 0.05, SCORING
+        mixed = {c: with_uniform(d, SCORING) for c, d in densities.items()}
+        args = model.nearest, question, mixed, 0.05
         (_, _, _, nll, rank) = next(iter(likelihood_rows(*args)))
         of = of_category.query(f"method == '{method}' and variant == '{variant}'")
         row = of[of["task"] == "filled"].iloc[0]

@@ -1,6 +1,5 @@
 """Check the artifacts of a data set against claims, each a function of this file."""
 
-import csv
 import logging
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -10,6 +9,7 @@ import pandas as pd
 
 from command import run
 from placing.artifacts.formats import read_json, read_table
+from placing.coverage import folds_of
 from placing.errors import BadArtifact
 from placing.explanation import EXPLANATION_COLUMNS
 from placing.metrics import ERRORS, SCORE_COLUMNS
@@ -35,7 +35,7 @@ def main(dataset: str, scenes_sheet: Path, results: Path, passed: Path) -> None:
         results: Directory of the results of the data set.
         passed: Text to write.
     """
-    folds = folds_of(scenes_sheet, dataset)
+    folds = folds_of(pd.read_csv(scenes_sheet), dataset)
     broken = [
         f"{claim.__name__}: {line}"
         for claim in CLAIMS
@@ -48,13 +48,6 @@ def main(dataset: str, scenes_sheet: Path, results: Path, passed: Path) -> None:
     passed.parent.mkdir(parents=True, exist_ok=True)
     passed.write_text("".join(f"{claim.__name__}\n" for claim in CLAIMS))
     log.info("%s: %d claims hold", dataset, len(CLAIMS))
-
-
-def folds_of(sheet: Path, dataset: str) -> Folds:
-    """Return the fold of every scene of a data set."""
-    with sheet.open(newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["dataset"] == dataset]
-    return {row["scene"]: int(row["fold"]) for row in rows}
 
 
 def scores_of(results: Path, folds: Folds) -> pd.DataFrame:

@@ -19,6 +19,7 @@ from placing.examples import baseline_values, examples_of
 from placing.fitting import FittingConfig
 from placing.human import HumanPoses
 from placing.learning import LearningConfig, learn_theta
+from placing.likelihoods import nearest_places
 from placing.object_context import ObjectContextConfig, learn_relations
 from placing.scene import Scene
 from placing.seeds import generator
@@ -60,8 +61,9 @@ def main(
     """
     training = list(read_training(scenes, features))
     names = sorted(scene.scene for scene, _, _ in training)
+    placed = [(s, c, nearest_places(s, c.location)) for s, c, _ in training]
     for method in FEATURES_OF:
-        values = baseline_values([(s, c) for s, c, _ in training], method)
+        values = baseline_values(placed, method)
         shares = learn_histograms(values, method, baselines)
         write_histograms(theta / f"{method}.json", shares, names)
     labelled = [(s, a) for s, _, _ in training for a in s.arrangements]

@@ -43,7 +43,26 @@ def main(
     recordings: Path,
     seed: int,
 ) -> None:
-    """Record every scene of a fold and task."""
+    """Record every scene of a fold and task.
+
+    Args:
+        dataset: Data set of the scenes.
+        task: Task that was answered.
+        fold: Fold of the scenes.
+        method: Method whose answers are recorded.
+        clouds: Directory of the clouds of the fold.
+        scenes: Directory of its scenes.
+        features: Directory of their places and valid human poses.
+        arrangements: Table of placements.
+        poses: Table of sampled human poses.
+        densities: Directory of the densities of the placements.
+        scores: Table of errors.
+        traces: Table of the chains, sweep by sweep.
+        diagnostics: Table of how far the chains agree.
+        explanations: Table of reasons for each placement.
+        recordings: Directory to write.
+        seed: Seed of the study, named in the recordings.
+    """
     methods = sorted(read_table(arrangements, ["method"])["method"].unique())
     if method not in methods:
         raise unknown(f"method of {arrangements}", method, methods)

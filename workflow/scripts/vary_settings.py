@@ -15,7 +15,12 @@ from placing.artifacts.formats import write_table
 from placing.artifacts.scenes import read_scene
 from placing.artifacts.theta import read_learned
 from placing.learned import Choices
-from placing.likelihoods import LIKELIHOOD_COLUMNS, ScoringConfig, likelihood_rows
+from placing.likelihoods import (
+    LIKELIHOOD_COLUMNS,
+    ScoringConfig,
+    likelihood_rows,
+    with_uniform,
+)
 from placing.scene_model import SceneModel, Settings
 from placing.scoring import score_scene
 from placing.seeds import generator
@@ -99,7 +104,8 @@ def scores_of(
         given = asked.answer(METHOD)
         rows += placement_rows(model.scene.scene, task, METHOD, question, given, {})
         key = model.scene.scene, task, METHOD, question.name
-        args = model.nearest, question, given.densities, spacing_m, scoring
+        mixed = {c: with_uniform(d, scoring) for c, d in given.densities.items()}
+        args = model.nearest, question, mixed, spacing_m
         likely += [(*key, *row) for row in likelihood_rows(*args)]
     answers = pd.DataFrame(rows, columns=PLACEMENT_COLUMNS)
     likelihoods = pd.DataFrame(likely, columns=LIKELIHOOD_COLUMNS)

@@ -89,6 +89,8 @@ def office_of(
     if scene.scene != layout.scene:
         message = f"scene is {scene.scene!r}, expected {layout.scene!r} as of the room"
         raise BadInput(message)
+    if not scene.arrangements:
+        raise BadInput(f"{scene.scene}: arrangements: expected at least one to show")
     labelled = scene.arrangements[0]
     question = f"{labelled.name}/{figure.category}"
     of_question = tables.poses_filled[tables.poses_filled["question"] == question]

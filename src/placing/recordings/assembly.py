@@ -46,14 +46,15 @@ def scene_recording(
     A filled room is shown with the objects of its first labelled arrangement, each
     category taken out in turn.
     """
-    labels, answers = scene.arrangements[0].name, tables.answers
+    labelled = scene.arrangements[0] if scene.arrangements else None
+    labels, answers = labelled.name if labelled else "", tables.answers
     is_shown = answers["labels"].isin(["", labels])
     shown = answers[is_shown & (answers["status"] == PLACED)].sort_values("object")
     items = {item.object_id: item for item in scene.objects}
-    targets = {p.object_id: p for p in scene.arrangements[0].placements}
+    targets = {p.object_id: p for p in labelled.placements} if labelled else {}
     matched = _matched(shown, targets)
     scores = tables.scores.set_index("object")
-    of_object = scores[scores["labels"] == labels].loc[matched]
+    of_object = scores[scores["labels"] == labels].reindex(matched)
     question = _shown_question(shown, items)
     asked = answers.loc[is_shown, "question"].unique()
     explained = tables.explanations["question"].isin(asked)
@@ -72,7 +73,7 @@ def scene_recording(
         uses=_uses(tables.explanations[explained]),
         given=_boxes(items, targets if job.task == "filled" else {}),
         predicted=_predicted(items, shown),
-        labelled=_boxes(items, {name: targets[name] for name in matched}),
+        labelled=_boxes(items, {n: targets[n] for n in matched if n in targets}),
         errors_m=of_object["location_error_m"].to_numpy(float),
         log_density=-of_object["nll"].to_numpy(float),
         densities=_densities(shown, candidates, densities),
@@ -83,6 +84,8 @@ def _matched(shown: pd.DataFrame, targets: Mapping[str, Placement]) -> list[str]
     """Return the labelled object that each predicted one is scored by, in order."""
     objects, location = shown["object"].tolist(), shown[LOCATION].to_numpy(float)
     matched = np.array(objects, object)
+    if not targets:
+        return objects
     for rows in shown.groupby("category").indices.values():
         names = [objects[row] for row in rows]
         if len(names) > 1:
