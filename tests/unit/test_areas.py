@@ -1,5 +1,6 @@
 """Which placing areas are found in the clouds of simple furniture."""
 
+from dataclasses import replace
 from time import process_time
 
 import numpy as np
@@ -161,6 +162,33 @@ def test_a_lamp_over_a_desk_does_not_split_it() -> None:
     (top,) = at(areas, 0.75)
     assert overlap(top, box(-0.6, -0.4, 0.6, 0.4)) > 0.96
     assert np.isinf(top.clearance_m)
+
+
+def test_softness_is_the_mean_of_the_points_of_an_area_and_none_where_unknown() -> None:
+    soft, hard = (block((x, x + 0.5), (-0.4, 0.4), (0, 0.4)) for x in (-1, 0))
+    cloud = scan(soft, hard)
+    x, z = cloud.points[:, 0], cloud.points[:, 2]
+    softness = np.where((x < -0.5) & (z > 0.01), 0.5 + (x < -0.75) * 0.4, 0.0)
+    softness = np.where((z < 0.01), np.nan, softness).astype(np.float32)
+    floor, *tops = find_areas(replace(cloud, softness=softness), AREAS)
+    assert floor.softness is None
+    assert [a.softness for a in tops] == [pytest.approx(0.7, abs=0.02), 0.0]
+    assert [a.softness for a in find_areas(cloud, AREAS)] == [None] * 3
+
+
+def test_a_board_that_is_seen_twice_is_one_area() -> None:
+    cloud = scan(slab(box(-0.6, -0.4, 0.6, 0.4), (0.72, 0.75)))
+    middle = np.abs(cloud.points[:, :2]).max(axis=1) < 0.25
+    again = cloud.take(middle & (cloud.points[:, 2] > 0.74))
+    again = replace(again, points=again.points + np.array([0, 0, 0.02], np.float32))
+    both = Cloud(
+        np.concatenate([cloud.points, again.points]),
+        np.concatenate([cloud.normals, again.normals]),
+        np.concatenate([cloud.colors, again.colors]),
+    )
+    assert [a.height_m for a in find_areas(both, AREAS)] == pytest.approx(
+        [a.height_m for a in find_areas(cloud, AREAS)]
+    )
 
 
 def test_names_are_ordered_and_the_order_of_points_does_not_matter() -> None:

@@ -113,6 +113,29 @@ def test_thinning_is_the_mean_over_voxels_of_a_dictionary() -> None:
     assert np.allclose(np.sort(thin(cloud, 0.05).points, axis=0), expected, atol=1e-6)
 
 
+def test_thinning_averages_the_softness_that_is_known() -> None:
+    points = np.array([[0, 0, 0], [0, 0, 0], [1, 0, 0], [2, 0, 0]], np.float32)
+    softness = np.array([0.2, 0.6, np.nan, np.nan], np.float32)
+    softness = np.concatenate([softness, [1.0]]).astype(np.float32)
+    points = np.concatenate([points, [[2, 0, 0]]]).astype(np.float32)
+    none = np.zeros_like(points)
+    thinned = thin(Cloud(points, none, none.astype(np.uint8), softness), 0.1)
+    assert thinned.softness is not None
+    assert np.allclose(thinned.softness, [0.4, np.nan, 1.0], equal_nan=True)
+
+
+def test_preprocessing_and_sampling_carry_softness() -> None:
+    rng = np.random.default_rng(1)
+    cloud = preprocess(sample_cloud(rng, room(), 0.015, [0.0, 0.0, 0.7]), CONFIG)
+    assert cloud.softness is not None
+    is_red = cloud.colors[:, 0] == 200
+    assert np.allclose(cloud.softness[is_red], 0.7)
+    assert (cloud.softness[~is_red] == 0).all()
+    bare = preprocess(sampled(), CONFIG)
+    assert bare.softness is None
+    assert np.array_equal(bare.points, cloud.points)
+
+
 def test_outliers_are_the_points_with_few_others_around() -> None:
     plane = thin(sampled(), 0.02)
     stray = np.array([[0, 0, 1.5], [1.2, -0.7, 1.2], [-1.2, -0.7, 1.2]], np.float32)

@@ -1,5 +1,6 @@
 """What the reader of point clouds accepts, and how it refuses the rest."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -37,6 +38,33 @@ def test_what_was_written_is_read_back_exactly(tmp_path: Path) -> None:
     assert np.array_equal(read.normals, cloud.normals)
     assert np.array_equal(read.colors, cloud.colors)
     assert [p.name for p in tmp_path.iterdir()] == ["a.ply"]
+
+
+def test_softness_is_read_back_exactly_and_unknown_where_nothing_is_said(
+    tmp_path: Path,
+) -> None:
+    softness = np.array([0, 1, 0.3, np.nan] * 25, np.float32)
+    write_ply(tmp_path / "a.ply", replace(cloud_of(100), softness=softness))
+    write_ply(tmp_path / "b.ply", cloud_of(100))
+    read = read_ply(tmp_path / "a.ply")
+    assert read.softness is not None
+    assert np.array_equal(read.softness, softness, equal_nan=True)
+    assert np.array_equal(read.points, cloud_of(100).points)
+    taken = read.take(np.array([2, 3])).softness
+    assert taken is not None
+    assert np.array_equal(taken, softness[2:4], equal_nan=True)
+    assert read_ply(tmp_path / "b.ply").softness is None
+    assert b"softness" not in (tmp_path / "b.ply").read_bytes()
+
+
+@pytest.mark.parametrize("value", ["1.5", "-0.1", "inf"])
+def test_softness_beyond_its_range_is_named_in_one_line(
+    tmp_path: Path, value: str
+) -> None:
+    head = f"format ascii 1.0\nelement vertex 2\n{XYZ}property float softness\n"
+    body = f"1 2 3 nan\n4 5 6 {value}\n".encode()
+    with pytest.raises(BadInput, match=r"softness of vertex 1 is .*expected a number"):
+        read_ply(write(tmp_path / "a.ply", head, body))
 
 
 def test_open3d_reads_what_was_written(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 INPUTS
 
     resources/rooms/{scene}.yaml                     rooms of the data set `rooms`
+    resources/scans/{scene}.yaml                     rooms that a depth camera sees
     the wheel of procthor                            rooms of the data set `thor`
     config/objects.csv                               the objects
 
@@ -12,6 +13,11 @@ OUTPUTS
     results/{dataset}/scenes/fold{fold}/             {scene}.json
     results/{dataset}/features/fold{fold}/           {scene}.npz
 """
+
+
+def folder_of(wildcards):
+    """Return the folder of the room files of a data set."""
+    return f"resources/{'scans' if wildcards.dataset == 'scans' else 'rooms'}"
 
 
 rule preprocess_cloud:
@@ -31,21 +37,22 @@ rule preprocess_cloud:
         code=digest("preprocess_cloud"),
         scenes=scenes_of,
         seed=config["seed"],
+        rooms=folder_of,
         spacing_m=config["scan"]["spacing_m"],
-        cloud=flags("cloud"),
+        settings=flags("camera", "cloud"),
     shell:
         r"""
         python workflow/scripts/preprocess_cloud.py \
             --dataset {wildcards.dataset:q} \
             --scenes {params.scenes:q} \
-            --rooms resources/rooms \
+            --rooms {params.rooms:q} \
             --schema {input.room_schema:q} \
             --catalogue {input.catalogue:q} \
             --types {input.types:q} \
             --clouds {output.clouds:q} \
             --seed {params.seed:q} \
             --spacing-m {params.spacing_m:q} \
-            {params.cloud:q} \
+            {params.settings:q} \
             2>{log:q}
         """
 

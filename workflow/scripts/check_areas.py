@@ -16,7 +16,7 @@ log = logging.getLogger(__name__)
 
 
 def main(
-    dataset: Literal["rooms", "thor"],
+    dataset: Literal["rooms", "scans", "thor"],
     rooms: Path,
     schema: Path,
     catalogue: Path,

@@ -8,10 +8,11 @@ from tqdm import tqdm
 
 from command import run
 from placing.artifacts.scenes import write_scene
+from placing.camera import CameraConfig, scan_depth
 from placing.clouds.cloud import CloudConfig, preprocess, sample_cloud
 from placing.clouds.ply import write_ply
 from placing.dressing import meshes_of
-from placing.layouts import layout_reader
+from placing.layouts import layout_reader, softness_of
 from placing.scene import Scene
 from placing.seeds import generator
 
@@ -19,7 +20,7 @@ log = logging.getLogger(__name__)
 
 
 def main(
-    dataset: Literal["rooms", "thor"],
+    dataset: Literal["rooms", "scans", "thor"],
     scenes: tuple[str, ...],
     rooms: Path,
     schema: Path,
@@ -28,6 +29,7 @@ def main(
     clouds: Path,
     seed: int,
     spacing_m: float,
+    camera: CameraConfig,
     cloud: CloudConfig,
 ) -> None:
     """Scan the scenes of a fold and clean their clouds."""
@@ -35,12 +37,17 @@ def main(
     for scene in tqdm(scenes, unit="scene", disable=None):
         layout = read(scene)
         rng = generator(seed, "preprocess_cloud", dataset, scene)
-        scanned = sample_cloud(rng, list(meshes_of(layout).values()), spacing_m)
+        meshes, softness = meshes_of(layout), softness_of(layout)
+        pieces, soft = list(meshes.values()), [softness[name] for name in meshes]
+        if dataset == "scans":
+            scanned = scan_depth(rng, layout, pieces, soft, camera)
+        else:
+            scanned = sample_cloud(rng, pieces, spacing_m, soft)
         clean = preprocess(scanned, cloud)
         write_ply(clouds / f"{scene}.ply", clean)
         bare = Scene(scene, layout.kind, (), layout.objects, layout.arrangements)
         write_scene(clouds / f"{scene}.json", bare)
-        log.info("%s: %d points", scene, len(clean))
+        log.info("%s: %d of %d points", scene, len(clean), len(scanned))
 
 
 if __name__ == "__main__":

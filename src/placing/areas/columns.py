@@ -41,6 +41,8 @@ class Columns:
     """(n,) height of the unit normal: 1 faces up, -1 faces down."""
     facing: NDArray[np.int8]
     """(n,) `UP`, `SIDE` or `DOWN`."""
+    softness: NDArray[np.float32] | None = None
+    """(n,) 0 hard to 1 soft, NaN where unknown; None where nothing is known of it."""
 
 
 def sort_columns(cloud: Cloud, cell_m: float) -> Columns:
@@ -61,6 +63,7 @@ def sort_columns(cloud: Cloud, cell_m: float) -> Columns:
         points=cloud.points.take(order, axis=0),
         rise=rise,
         facing=facing.astype(np.int8),
+        softness=None if cloud.softness is None else cloud.softness.take(order),
     )
 
 
@@ -89,10 +92,10 @@ def points_at(
     heights_m: NDArray[np.float64],
     merge_m: float,
     least_rise: float,
-) -> NDArray[np.float64]:
-    """Return the points of chosen columns (t,) that face up at a height, (n, 2) [m]."""
+) -> NDArray[np.int64]:
+    """Return which points of chosen columns (t,) face up at a height, shape (n,)."""
     count = columns.start[chosen + 1] - columns.start[chosen]
-    found = np.empty((count.sum(), 2))
+    found = np.empty(count.sum(), np.int64)
     near = (merge_m, least_rise)
     sorted_points = (columns.start, columns.points, columns.rise)
     return found[: _pick(chosen, heights_m, near, *sorted_points, found)]
@@ -108,12 +111,12 @@ def _pick(
     rise: NDArray,
     found: NDArray,
 ) -> int:
-    """Write the points of the chosen columns near their heights, count them."""
+    """Write which points of the chosen columns are near their heights, count them."""
     n = 0
     for t in range(len(chosen)):
         for p in range(start[chosen[t]], start[chosen[t] + 1]):
             if abs(points[p, 2] - heights[t]) <= near[0] and rise[p] > near[1]:
-                found[n, 0], found[n, 1] = points[p, 0], points[p, 1]
+                found[n] = p
                 n += 1
     return n
 

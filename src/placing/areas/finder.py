@@ -13,7 +13,13 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from placing.areas.columns import Columns, free_heights, points_at, sort_columns
+from placing.areas.columns import (
+    MARGIN_M,
+    Columns,
+    free_heights,
+    points_at,
+    sort_columns,
+)
 from placing.areas.outlines import open_holes, outlines
 from placing.areas.tiles import (
     Tiles,
@@ -78,7 +84,7 @@ def find_areas(cloud: Cloud, config: AreaConfig) -> tuple[PlacingArea, ...]:
         if len(members) >= n_fewest  # Smaller groups cannot hold an area.
         for area in _areas(columns, tiles.take(members), config)
     ]
-    return _name(areas, config.merge_m)
+    return _name(_without_ghosts(areas), config.merge_m)
 
 
 def clearance_at(
@@ -145,21 +151,40 @@ def _members(labels: NDArray[np.int64]) -> list[NDArray[np.int64]]:
 def _areas(columns: Columns, tiles: Tiles, config: AreaConfig) -> list[PlacingArea]:
     """Return the areas of one group of tiles, without names."""
     height = float(np.median(tiles.height_m))
-    points = _level_points(columns, tiles, config)
+    rows = _level_points(columns, tiles, config)
+    points = columns.points[rows, :2].astype(float)
     polygons = outlines(
         tiles.cell, points, columns.origin_m, columns.cell_m, config.min_width_m
     )
     clearance = float(
         np.quantile(tiles.clearance_m, config.clearance_quantile, method="lower")
     )
+    soft = None if columns.softness is None else columns.softness[rows]
     return [
-        PlacingArea("", _corners(polygon), height, clearance, False, None)
+        PlacingArea(
+            "",
+            _corners(polygon),
+            height,
+            clearance,
+            False,
+            _mean(soft, points, polygon),
+        )
         for polygon in polygons
     ]
 
 
+def _mean(
+    softness: NDArray[np.float32] | None, points: NDArray, polygon: shapely.Polygon
+) -> float | None:
+    """Return the mean softness of the points in a polygon, None where unknown."""
+    if softness is None:
+        return None
+    is_known = ~np.isnan(softness) & shapely.contains_xy(polygon, points)
+    return round(float(softness[is_known].mean()), 3) if is_known.any() else None
+
+
 def _level_points(columns: Columns, tiles: Tiles, config: AreaConfig) -> NDArray:
-    """Return the points that made the tiles, shape (n, 2) [m]."""
+    """Return which points made the tiles, shape (n,)."""
     column = tiles.cell[:, 0] * columns.shape[1] + tiles.cell[:, 1]
     least_rise = np.cos(config.max_tilt_rad)
     return points_at(columns, column, tiles.height_m, config.merge_m, least_rise)
@@ -169,6 +194,25 @@ def _corners(polygon: shapely.Polygon) -> NDArray[np.float64]:
     """Return the corners of a polygon with its holes opened, counter-clockwise."""
     simple = shapely.geometry.polygon.orient(open_holes(polygon))
     return np.asarray(simple.exterior.coords)[:-1]
+
+
+def _without_ghosts(areas: list[PlacingArea]) -> list[PlacingArea]:
+    """Return the areas without those that mostly repeat a larger one.
+
+    Images whose poses disagree show one board twice, one close above the other.
+    """
+    polygons = [shapely.make_valid(shapely.Polygon(a.polygon_m)) for a in areas]
+    height = np.array([area.height_m for area in areas])
+    size = np.array([polygon.area for polygon in polygons])
+    kept = []
+    for k, area in enumerate(areas):
+        near = np.flatnonzero(
+            (np.abs(height - height[k]) < MARGIN_M) & (size > size[k])
+        )
+        over = sum(polygons[k].intersection(polygons[n]).area for n in near)
+        if over <= size[k] / 2:
+            kept.append(area)
+    return kept
 
 
 def _name(areas: list[PlacingArea], merge_m: float) -> tuple[PlacingArea, ...]:

@@ -8,7 +8,7 @@ Letters for shapes: n points, f faces.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import trimesh
@@ -21,12 +21,15 @@ from placing.clouds.ply import Cloud
 from placing.clouds.voxels import (
     add_sides,
     average,
+    average_known,
     cell_keys,
     count_around,
     lowest,
 )
 from placing.errors import BadInput
 
+MAX_EXTENT_M = 100.0
+"""Guards the memory: no scene is that wide, but one stray cluster makes a scan so."""
 TILE = 64
 """Period of the jitter of the sampling lattice, in lattice cells."""
 
@@ -56,12 +59,16 @@ class CloudConfig:
 
 
 def sample_cloud(
-    rng: Generator, meshes: Sequence[trimesh.Trimesh], spacing_m: float
+    rng: Generator,
+    meshes: Sequence[trimesh.Trimesh],
+    spacing_m: float,
+    softness: Sequence[float] | None = None,
 ) -> Cloud:
     """Return points on the faces of the meshes, one per square of `spacing_m`.
 
     The points are a jittered lattice in the coordinate plane that a face is closest
-    to: other than independent draws in proportion to area it leaves no gaps.
+    to: other than independent draws in proportion to area it leaves no gaps. `softness`
+    is that of each mesh, where known.
     """
     if not meshes:
         raise ValueError("expected at least one mesh to sample")
@@ -72,30 +79,61 @@ def sample_cloud(
     length = np.linalg.norm(normals, axis=1)
     is_face = length > 1e-12  # Faces without area have no normal.
     triangles, colors = triangles[is_face], colors[is_face]
+    soft = None if softness is None else _per_face(softness, meshes)[is_face]
     normals = normals[is_face] / length[is_face, None]
     axes = np.abs(normals).argmax(axis=1)
     jitter = rng.random((3, TILE, TILE, 2))
     points, faces = _rasterise(triangles, axes, jitter, spacing_m)
-    return Cloud(points, normals[faces].astype(np.float32), colors[faces])
+    return Cloud(
+        points,
+        normals[faces].astype(np.float32),
+        colors[faces],
+        None if soft is None else soft[faces],
+    )
 
 
 def preprocess(cloud: Cloud, config: CloudConfig) -> Cloud:
     """Return the cloud cropped, thinned, cleaned, with normals, level, floor at 0."""
-    if config.crop_m is not None:
-        low, high = np.asarray(config.crop_m, np.float32)
-        inside = (cloud.points >= low) & (cloud.points <= high)
-        cloud = cloud.take(inside.all(axis=1))
+    cloud = crop(cloud, config)
+    _check_count(cloud, config)  # Before compiled loops, which trust there to be some.
+    if cloud.normals.any(axis=1).sum() < len(cloud) / 2:  # Few are as good as none.
+        cloud = replace(cloud, normals=np.zeros_like(cloud.normals))
     cloud = drop_outliers(thin(cloud, config.voxel_m), config)
-    if len(cloud) < config.min_points:
-        raise BadInput(
-            f"cloud: field points is {len(cloud)} after cropping and thinning,"
-            f" expected at least {config.min_points}"
-        )
+    _check_count(cloud, config)
+    _check_extent(cloud)
     if not cloud.normals.any():
         cloud = estimate_normals(
             cloud, config.normal_neighbors, config.up, config.max_tilt_rad
         )
     return level(cloud, config.up, config.max_tilt_rad, config.floor_fraction)
+
+
+def crop(cloud: Cloud, config: CloudConfig) -> Cloud:
+    """Return the points between the corners of what is kept, all without corners."""
+    if config.crop_m is None:
+        return cloud
+    low, high = np.asarray(config.crop_m, np.float32)
+    inside = (cloud.points >= low) & (cloud.points <= high)
+    return cloud.take(inside.all(axis=1))
+
+
+def _check_count(cloud: Cloud, config: CloudConfig) -> None:
+    """Refuse a cloud with too few points to be a scene."""
+    if len(cloud) < config.min_points:
+        raise BadInput(
+            f"cloud: field points is {len(cloud)} after cropping and thinning,"
+            f" expected at least {config.min_points}, in metres"
+        )
+
+
+def _check_extent(cloud: Cloud) -> None:
+    """Refuse a cloud too wide for tables with a row for each cell of its floor plan."""
+    extent = float(np.ptp(cloud.points, axis=0).max())
+    if extent > MAX_EXTENT_M:
+        raise BadInput(
+            f"cloud: field extent is {extent:.0f} m, expected at most"
+            f" {MAX_EXTENT_M:.0f} m; crop_m keeps a part"
+        )
 
 
 def thin(cloud: Cloud, voxel_m: float) -> Cloud:
@@ -107,7 +145,10 @@ def thin(cloud: Cloud, voxel_m: float) -> Cloud:
     low = lowest(cloud.points) - 0.37 * voxel_m  # Off the round heights of designs.
     keys = add_sides(cell_keys(cloud.points, low, voxel_m)[0], cloud.normals)
     order = np.argsort(keys, kind="stable")
-    return Cloud(*average(keys, order, cloud.points, cloud.normals, cloud.colors))
+    means = average(keys, order, cloud.points, cloud.normals, cloud.colors)
+    if cloud.softness is None:
+        return Cloud(*means)
+    return Cloud(*means, average_known(keys, order, cloud.softness))
 
 
 def drop_outliers(cloud: Cloud, config: CloudConfig) -> Cloud:
@@ -117,6 +158,13 @@ def drop_outliers(cloud: Cloud, config: CloudConfig) -> Cloud:
     keys, shape = cell_keys(cloud.points, low, config.outlier_cell_m)
     n_around = count_around(keys, np.argsort(keys, kind="stable"), shape)
     return cloud.take(n_around > config.outlier_neighbors)
+
+
+def _per_face(
+    values: Sequence[float], meshes: Sequence[trimesh.Trimesh]
+) -> NDArray[np.float32]:
+    """Return the value of the mesh that each face belongs to, shape (f,)."""
+    return np.repeat(np.asarray(values, np.float32), [len(m.faces) for m in meshes])
 
 
 def _face_colors(mesh: trimesh.Trimesh) -> NDArray[np.uint8]:

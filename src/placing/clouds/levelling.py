@@ -1,13 +1,15 @@
 """Normals of a scan, and the rigid motion that levels it on its floor.
 
-Letters for shapes: n points, k neighbours.
+Letters for shapes: n points.
 """
+
+from dataclasses import replace
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
+from placing.clouds.planes import fit_planes
 from placing.clouds.ply import Cloud
 from placing.errors import BadInput
 
@@ -22,16 +24,11 @@ def estimate_normals(
     cloud: Cloud, n_neighbors: int, up: tuple[float, float, float], max_tilt_rad: float
 ) -> Cloud:
     """Return the cloud with normals of planes through the neighbours of each point."""
-    tree = cKDTree(cloud.points)
-    neighbors = tree.query(cloud.points, min(n_neighbors, len(cloud)))[1]  # (n, k)
-    around = cloud.points[neighbors]
-    around = around - around.mean(axis=1, keepdims=True)
-    covariance = np.einsum("nki,nkj->nij", around, around)
-    normals = np.linalg.eigh(covariance.astype(float))[1][:, :, 0]  # (n, 3)
+    normals = fit_planes(cloud.points, n_neighbors)
     normals *= _orientation(cloud.points, normals, np.asarray(up), max_tilt_rad)[
         :, None
     ]
-    return Cloud(cloud.points, normals.astype(np.float32), cloud.colors)
+    return replace(cloud, normals=normals.astype(np.float32))
 
 
 def level(
@@ -45,7 +42,7 @@ def level(
         R = turn_to_z(direction)  # (3, 3)
         points, normals = _turn(cloud.points, R), _turn(cloud.normals, R)
     points[:, 2] -= floor_height(points, normals, max_tilt_rad, fraction)
-    return Cloud(points, normals, cloud.colors)
+    return replace(cloud, points=points, normals=normals)
 
 
 def vertical(

@@ -3,7 +3,8 @@
 Files of this project are binary and little-endian, with float x y z nx ny nz and
 uchar red green blue. Ascii, big-endian, other number types, further properties and
 faces, as other programs write them, are read too. Where normals are missing they are
-0, where colours are missing they are grey.
+0, where colours are missing they are grey. How soft points are is a further property,
+float softness from 0 to 1 or NaN, which only some clouds have.
 """
 
 from dataclasses import dataclass
@@ -17,9 +18,12 @@ from placing.clouds.ply_header import Element, Header, read_header
 from placing.errors import BadInput
 
 POINT, NORMAL, COLOR = ("x", "y", "z"), ("nx", "ny", "nz"), ("red", "green", "blue")
+SOFTNESS = "softness"
 ROW = np.dtype([(n, "<f4") for n in POINT + NORMAL] + [(n, "u1") for n in COLOR])
 MAX_COORDINATE_M = 1e4
 """Guards against files in millimetres and against damage; no room is that large."""
+MAX_ASCII_BYTES = 2_000_000_000
+"""Guards the memory: text takes ten times its size while it is read."""
 GREY = 128
 
 
@@ -33,6 +37,8 @@ class Cloud:
     """(n, 3) unit vectors that point to free space; 0 where unknown."""
     colors: NDArray[np.uint8]
     """(n, 3) red, green, blue."""
+    softness: NDArray[np.float32] | None = None
+    """(n,) 0 hard to 1 soft, NaN where unknown; None where nothing is known of it."""
 
     def __len__(self) -> int:
         """Return the number of points."""
@@ -45,23 +51,35 @@ class Cloud:
             self.points.take(rows, axis=0),
             self.normals.take(rows, axis=0),
             self.colors.take(rows, axis=0),
+            None if self.softness is None else self.softness.take(rows),
         )
 
 
 def read_ply(path: Path) -> Cloud:
     """Return the checked point cloud of a PLY file."""
-    if not path.is_file():
-        raise BadInput(f"{path}: file is missing, expected a point cloud in PLY")
-    header = read_header(path)
-    rows = (
-        _read_ascii(path, header) if header.order == "=" else _read_binary(path, header)
+    try:
+        if not path.is_file():
+            what = "is no file" if path.exists() else "file is missing"
+            raise BadInput(f"{path}: {what}, expected a point cloud in PLY")
+        header = read_header(path)
+        read = _read_ascii if header.order == "=" else _read_binary
+        rows = read(path, header)
+    except OSError as error:
+        raise BadInput(
+            f"{path}: cannot be read ({error.strerror}), expected a point cloud in PLY"
+        ) from error
+    return Cloud(
+        _points(path, rows),
+        _normals(path, rows),
+        _colors(path, rows),
+        _softness(path, rows),
     )
-    return Cloud(_points(path, rows), _normals(path, rows), _colors(path, rows))
 
 
 def write_ply(path: Path, cloud: Cloud) -> None:
     """Write the point cloud as binary PLY, whole or not at all."""
-    rows = np.empty(len(cloud), ROW)
+    soft = [] if cloud.softness is None else [(SOFTNESS, "<f4")]
+    rows = np.empty(len(cloud), np.dtype(ROW.descr + soft))
     for names, values in zip(
         (POINT, NORMAL, COLOR), (cloud.points, cloud.normals, cloud.colors), strict=True
     ):
@@ -69,6 +87,9 @@ def write_ply(path: Path, cloud: Cloud) -> None:
             rows[name] = values[:, k]
     kinds = [f"property float {name}\n" for name in POINT + NORMAL]
     kinds += [f"property uchar {name}\n" for name in COLOR]
+    if cloud.softness is not None:
+        rows[SOFTNESS] = cloud.softness
+        kinds.append(f"property float {SOFTNESS}\n")
     head = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(rows)}\n"
     with replacing(path) as part, part.open("wb") as file:
         file.write((head + "".join(kinds) + "end_header\n").encode())
@@ -132,6 +153,11 @@ def _skip_lists(path: Path, order: str, element: Element, position: int) -> int:
 
 def _read_ascii(path: Path, header: Header) -> NDArray:
     """Return the rows of the vertices of a PLY file in ascii."""
+    if (n_bytes := path.stat().st_size) > MAX_ASCII_BYTES:
+        raise BadInput(
+            f"{path}: field size is {n_bytes} bytes of ascii, expected at most"
+            f" {MAX_ASCII_BYTES}; binary files may be larger"
+        )
     with path.open("rb") as file:
         file.seek(header.n_bytes)
         lines = file.read().splitlines()
@@ -180,11 +206,24 @@ def _colors(path: Path, rows: NDArray) -> NDArray[np.uint8]:
     return _columns(path, rows, COLOR, 0.0, 255.0).astype(np.uint8)
 
 
+def _softness(path: Path, rows: NDArray) -> NDArray[np.float32] | None:
+    """Return the softness, NaN where unknown, None without the property, shape (n,)."""
+    if SOFTNESS not in (rows.dtype.names or ()):
+        return None
+    known = np.where(np.isnan(rows[SOFTNESS]), 0, rows[SOFTNESS])
+    checked = _columns(path, {SOFTNESS: known}, (SOFTNESS,), 0.0, 1.0)[:, 0]
+    return np.where(np.isnan(rows[SOFTNESS]), np.float32(np.nan), checked)
+
+
 def _columns(
-    path: Path, rows: NDArray, names: tuple[str, ...], low: float, high: float
+    path: Path,
+    rows: NDArray | dict[str, NDArray],
+    names: tuple[str, ...],
+    low: float,
+    high: float,
 ) -> NDArray[np.float32]:
-    """Return columns side by side, all from `low` to `high`, shape (n, 3)."""
-    table = np.empty((len(rows), len(names)), np.float32)
+    """Return columns side by side, all from `low` to `high`, shape (n, columns)."""
+    table = np.empty((len(rows[names[0]]), len(names)), np.float32)
     for k, name in enumerate(names):
         column = rows[name]
         is_bad = ~((column >= low) & (column <= high))  # NaN compares as False.

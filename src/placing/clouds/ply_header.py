@@ -22,6 +22,8 @@ TYPES = {
     **{"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2"},
     **{"int32": "i4", "uint32": "u4", "float32": "f4", "float64": "f8"},
 }
+LENGTHS = {name: kind for name, kind in TYPES.items() if kind[0] in "iu"}
+"""Types that can count the items of a list."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +101,7 @@ def _parse(path: Path, lines: list[str]) -> tuple[str, list[Element]]:
                 order = FORMATS[name]
             case ["element", name, count] if count.isascii() and count.isdigit():
                 elements.append(Element(name, int(count[:20]), []))
-            case ["property", "list", n, t, name] if n in TYPES and t in TYPES:
+            case ["property", "list", n, t, name] if n in LENGTHS and t in TYPES:
                 _add(path, elements, Property(name, TYPES[t], TYPES[n]))
             case ["property", t, name] if t in TYPES:
                 _add(path, elements, Property(name, TYPES[t], None))

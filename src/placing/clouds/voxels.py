@@ -90,6 +90,23 @@ def average(
 
 
 @njit(cache=True)
+def average_known(keys: NDArray, order: NDArray, values: NDArray) -> NDArray:
+    """Return the means of the values of equal keys that are not NaN, shape (m,)."""
+    mean = np.empty_like(values)
+    m, first = 0, 0
+    while first < len(order):
+        total, n_known, end = 0.0, 0, first
+        while end < len(order) and keys[order[end]] == keys[order[first]]:
+            if not np.isnan(values[order[end]]):
+                total += values[order[end]]
+                n_known += 1
+            end += 1
+        mean[m] = total / n_known if n_known > 0 else np.nan
+        m, first = m + 1, end
+    return mean[:m]
+
+
+@njit(cache=True)
 def count_around(keys: NDArray, order: NDArray, shape: tuple[int, int, int]) -> NDArray:
     """Return how many points are in the cell of each and the 26 around, shape (n,)."""
     sorted_keys = keys[order]
