@@ -14,6 +14,9 @@ from placing.shapes.parts import NARROWEST_M
 from placing.shapes.shape import Shape, Support
 
 TYPICAL = {
+    "stemware_holder": (0.3, 0.5, 0.4),
+    "hooks": (0.07, 0.5, 0.12),
+    "pen_holder": (0.08, 0.08, 0.1),
     "desk": (0.8, 1.6, 0.74),
     "corner_desk": (1.6, 1.8, 0.74),
     "table": (1.2, 3.0, 0.75),

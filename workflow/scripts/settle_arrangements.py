@@ -3,6 +3,7 @@
 import logging
 from dataclasses import asdict, fields
 from pathlib import Path
+from typing import Literal
 
 import pandas as pd
 from tqdm import tqdm
@@ -15,6 +16,7 @@ from placing.physics.arrangements import (
     bodies_of,
     check_arrangements,
     complaints_about,
+    lacks,
 )
 from placing.physics.settling import SettleConfig
 from placing.rooms.reader import layout_reader
@@ -24,6 +26,7 @@ MOST_LINES = 20
 
 
 def main(
+    dataset: Literal["rooms", "scans"],
     rooms: Path,
     scenes: tuple[str, ...],
     schema: Path,
@@ -34,6 +37,7 @@ def main(
     """Settle the labelled arrangements of rooms and write a line for each placement.
 
     Args:
+        dataset: Data set of the scenes; each kind of `rooms` needs its objects.
         rooms: Directory of room files.
         scenes: Rooms to check.
         schema: JSON Schema of room files.
@@ -49,6 +53,7 @@ def main(
     for layout in tqdm(layouts, unit="room", disable=None):
         found += check_arrangements(layout, bodies, settling)
         failures += complaints_about(layout, settling)
+        failures += lacks(layout) if dataset == "rooms" else []
     columns = [field.name for field in fields(PlacementCheck)]
     table = pd.DataFrame([asdict(row) for row in found], columns=columns)
     write_csv(checks, table)

@@ -129,6 +129,16 @@ def reason_of(
     """Return what is wrong with a placement, the cause before what follows from it."""
     if not inside:
         return "outside the room"
+    if reason := unrest(settled, config):
+        return reason
+    if placement.area not in support:
+        carrier = " and ".join(support) or "nothing"
+        return f"not supported by {placement.area} but by {carrier}"
+    return ""
+
+
+def unrest(settled: Settled, config: SettleConfig) -> str:
+    """Return why an object does not count as staying put; empty if it does."""
     if settled.penetration_m > config.max_penetration_m:
         return (
             f"penetrates {settled.penetrated} by {settled.penetration_m * 1e3:.0f} mm"
@@ -141,9 +151,6 @@ def reason_of(
         return f"moved {settled.moved_m * 1e3:.0f} mm"
     if settled.speed_m_s > config.max_speed_m_s:
         return f"still moves at {settled.speed_m_s:.2f} m/s"
-    if placement.area not in support:
-        carrier = " and ".join(support) or "nothing"
-        return f"not supported by {placement.area} but by {carrier}"
     return ""
 
 
@@ -156,6 +163,16 @@ NEEDED = {
 """Categories that a room of each kind must hold an object of."""
 
 
+def lacks(layout: Layout) -> list[str]:
+    """Return a line for each category that a room of its kind needs and has not."""
+    held = {item.category for item in layout.objects}
+    return [
+        f"{layout.scene}: no object of category {name}, as every {layout.kind} needs"
+        for name in NEEDED.get(layout.kind, ())
+        if name not in held
+    ]
+
+
 def complaints_about(layout: Layout, config: SettleConfig) -> list[str]:
     """Return a line for each rule that the arrangements of a room as a whole break."""
     least, most = config.min_arrangements, config.max_arrangements
@@ -165,12 +182,6 @@ def complaints_about(layout: Layout, config: SettleConfig) -> list[str]:
             f"{layout.scene}: has {len(layout.arrangements)} arrangements, "
             f"expected {least} to {most}"
         )
-    held = {item.category for item in layout.objects}
-    complaints += [
-        f"{layout.scene}: no object of category {name}, as every {layout.kind} needs"
-        for name in NEEDED.get(layout.kind, ())
-        if name not in held
-    ]
     listed = {item.object_id for item in layout.objects}
     for arrangement in layout.arrangements:
         missing = listed - {p.object_id for p in arrangement.placements}

@@ -13,6 +13,7 @@ import pybullet
 
 from placing import rigid
 from placing.physics.bodies import Body, Piece
+from placing.physics.putting_down import put_down
 from placing.physics.simulator import (
     add_body,
     add_fixed,
@@ -73,11 +74,13 @@ def settle(
     fixed: Mapping[str, tuple[Piece, ...]],
     bodies: Mapping[str, tuple[Body, Array]],
     config: SettleConfig,
+    reach_m: float = 0.0,
 ) -> dict[str, Settled]:
     """Return what each body does when it is let go at its pose `T_world_body`.
 
     `fixed` holds furniture in the frame of the world; poses are those of the meshes
-    the bodies come from.
+    the bodies come from. The lowest first, bodies are put down before: moved up or down
+    by at most `reach_m` until they touch.
     """
     with new_world(config.step_rate_hz, config.friction, config.margin_m) as world:
         for name, piece in near_pieces(fixed, bodies, config.near_m):
@@ -86,6 +89,8 @@ def settle(
             add_body(world, name, body, T_world_body): (body, T_world_body)
             for name, (body, T_world_body) in bodies.items()
         }
+        if reach_m > 0:
+            starts = put_down(world, starts, reach_m)
         pybullet.performCollisionDetection(world.client)
         overlaps = {i: deepest_overlap(world, i) for i in starts}
         for _ in range(round(config.duration_s * config.step_rate_hz)):

@@ -19,6 +19,7 @@ from placing.shapes import (
     kitchenware,
     officeware,
     screens,
+    stemware,
 )
 from placing.shapes.shape import Shape, Support
 from placing.shapes.solids import Solid, mesh_of
@@ -44,6 +45,7 @@ OBJECTS: dict[str, Callable[[float, float, float], Solid]] = {
     "knife_block": kitchenware.knife_block,
     "ladle": kitchenware.ladle,
     "laptop": screens.laptop,
+    "martini_glass": stemware.martini_glass,
     "milk_carton": food.milk_carton,
     "monitor": screens.monitor,
     "mouse": keyboards.mouse,
@@ -64,6 +66,7 @@ OBJECTS: dict[str, Callable[[float, float, float], Solid]] = {
     "trash_bin": household.trash_bin,
     "tv": screens.tv,
     "vase": household.vase,
+    "wine_glass": stemware.wine_glass,
 }
 """Object shapes by name; each is a function of depth, width and height [m]."""
 
