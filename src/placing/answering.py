@@ -71,7 +71,7 @@ class Asked:
     ) -> None:
         """Find where each wanted object fits; `stream` gives the stream of a method."""
         self.model, self.question, self.choices = model, question, choices
-        self._stream = stream
+        self.stream = stream
         self._people: dict[str, People] = {}
         self._found: dict[tuple[str, str], tuple[Array, Array]] = {}
         given = [model.given_box(question.labels, p) for p in question.given]
@@ -84,7 +84,7 @@ class Asked:
 
     def answer(self, method: str) -> Answer:
         """Return densities and placements of the wanted objects."""
-        rng = self._stream(method)
+        rng = self.stream(method)
         people = self.people(rng, method)
         chosen, densities = [], {}
         for category in self.question.categories:
@@ -113,7 +113,7 @@ class Asked:
         if method not in HUMAN_METHODS or len(self.model.poses.kind) == 0:
             return None
         if method == "dp_object":
-            return self.people(self._stream("dp"), "dp")
+            return self.people(self.stream("dp"), "dp")
         if method not in self._people:
             k = self.choices.n_components if method == "fmm" else 0
             self._people[method] = (
@@ -148,7 +148,7 @@ class Asked:
             return model.object_density(question.labels, category, question.given)
         if method == "dp_object":
             w = self.choices.object_weight
-            parts = [self.density(self._stream(m), m, category) for m in _MIXED]
+            parts = [self.density(self.stream(m), m, category) for m in _MIXED]
             return tuple(w * h + (1 - w) * o for h, o in zip(*parts, strict=True))
         people = self.people(rng, method)
         if people is None:

@@ -46,7 +46,7 @@ def likelihood_rows(
     labels = [question.labels] if question.labels else list(nearest)
     for category, density in mixed.items():
         wanted = [item.object_id for item in question.of_category(category)]
-        names = [(of, name) for of in labels for name in wanted]
+        names = [(of, n) for of in labels for n in wanted if n in nearest[of]]
         at = [nearest[of][name] for of, name in names]
         values = fit(density, at, spacing_m)
         for (of, name), (nll, rank) in zip(names, values, strict=True):
@@ -54,7 +54,12 @@ def likelihood_rows(
 
 
 def nearest_places(scene: Scene, places: Array) -> dict[str, dict[str, int]]:
-    """Return the place nearest to where each labelled object rests, by arrangement."""
+    """Return the place nearest to where each labelled object rests, by arrangement.
+
+    In a scene without places no object has one.
+    """
+    if len(places) == 0:
+        return {arrangement.name: {} for arrangement in scene.arrangements}
     items = {item.object_id: item for item in scene.objects}
     at = np.ascontiguousarray(places.T)  # (3, p)
 

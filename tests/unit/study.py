@@ -35,7 +35,7 @@ OBJECTS = (
     SceneObject("laptop1", "laptop", "laptop", (0.25, 0.35, 0.25), 2.0, True, False),
     SceneObject("mouse1", "mouse", "mouse", (0.1, 0.06, 0.04), 0.1, True, True),
     SceneObject("mouse2", "mouse", "mouse", (0.1, 0.06, 0.04), 0.1, True, True),
-    SceneObject("shoes", "shoe", "shoe_pair", (0.28, 0.2, 0.1), 0.8, False, True),
+    SceneObject("shoes", "shoe", "shoes", (0.28, 0.2, 0.1), 0.8, False, True),
 )
 
 
