@@ -1,0 +1,1 @@
+"""Ratings by people who do not know which method made an arrangement."""

@@ -1,0 +1,116 @@
+"""Tabulate Table 2: correct places and scores, measured, published and rated."""
+
+import logging
+from pathlib import Path
+
+import pandas as pd
+from tqdm import tqdm
+
+from command import run
+from placing.artifacts.features import read_features
+from placing.artifacts.formats import read_table, write_csv
+from placing.artifacts.scenes import read_scene
+from placing.correct_places import CorrectPlaces, read_correct_places
+from placing.rating.agreement import agreement
+from placing.rating.answers import rated_cells, read_ratings
+from placing.rating.blinding import blinded
+from placing.report import write_text
+from placing.rooms.catalogue import read_catalogue
+from placing.rooms.file import read_yaml
+from placing.rooms.reader import layout_reader
+from placing.scene import Layout, Scene
+from placing.seeds import generator
+from placing.table2 import cells, table2
+from placing.table2_answers import JOINT_COLUMNS
+from placing.table2_page import table2_markdown
+from placing.table2_scores import score_scene, verdicts_of
+
+log = logging.getLogger(__name__)
+
+
+def main(
+    joint: Path,
+    rooms: Path,
+    schema: Path,
+    catalogue: Path,
+    scenes: Path,
+    features: Path,
+    correct_places: Path,
+    supports: Path,
+    paper: Path,
+    ratings_schema: Path,
+    scores: Path,
+    table: Path,
+    rated: Path,
+    markdown: Path,
+    seed: int,
+    min_overlap: float,
+    ratings: tuple[Path, ...] = (),
+) -> None:
+    """Tabulate Table 2: correct places and scores, measured, published and rated.
+
+    Args:
+        joint: Where every method puts every object (parquet).
+        rooms: Directory of room files of the data set.
+        schema: JSON Schema of room files.
+        catalogue: Table of objects.
+        scenes: Directory of the scenes.
+        features: Directory of the placement candidates.
+        correct_places: What the judge finds correct.
+        supports: Which kind of surface furniture offers, for the judge.
+        paper: Numbers of the paper.
+        ratings_schema: JSON Schema of a row of ratings.
+        scores: Every object with its error and its verdict, to write (CSV).
+        table: Table 2 to write (CSV).
+        rated: The same by raters (CSV), without rows where there are none.
+        markdown: The same as a page.
+        seed: Root of all random streams.
+        min_overlap: Share of an object's half-width that is on its area.
+        ratings: Files of raters.
+    """
+    answers = read_table(joint, JOINT_COLUMNS)
+    categories = sorted({item.category for item in read_catalogue(catalogue).values()})
+    places = read_correct_places(correct_places, supports, categories)
+    read_layout = layout_reader(rooms, schema, catalogue)
+    read = [read_scene(path) for path in sorted(scenes.glob("*.json"))]
+    every = _scored(
+        [read_layout(scene.scene) for scene in read],
+        *(read, features, answers, places, seed, min_overlap),
+    )
+    known = blinded(answers, {scene.scene: scene.objects for scene in read}, seed)
+    given = read_ratings(ratings, read_yaml(ratings_schema), known)
+    of_cells = cells(every)
+    measured = table2(of_cells)
+    by_raters = table2(rated_cells(given)) if ratings else measured.iloc[:0]
+    write_csv(scores, every)
+    write_csv(table, measured)
+    write_csv(rated, by_raters)
+    said = pd.read_csv(paper)
+    page = table2_markdown(of_cells, measured, said, by_raters, agreement(given))
+    write_text(markdown, page)
+    log.info("%d scenes, %d files of raters", len(read), len(ratings))
+
+
+def _scored(
+    layouts: list[Layout],
+    read: list[Scene],
+    features: Path,
+    answers: pd.DataFrame,
+    places: CorrectPlaces,
+    seed: int,
+    min_overlap: float,
+) -> pd.DataFrame:
+    """Return the errors and verdicts of all scenes."""
+    found = []
+    both = list(zip(layouts, read, strict=True))
+    for layout, scene in tqdm(both, unit="scene", disable=None):
+        candidates, _ = read_features(features / f"{scene.scene}.npz")
+        verdicts = verdicts_of(layout, scene, answers, places)
+        rng = generator(seed, "tabulate_table2", scene.scene)
+        args = scene, candidates, answers, verdicts, min_overlap
+        found.append(score_scene(rng, *args))
+    return pd.concat(found, ignore_index=True)
+
+
+if __name__ == "__main__":
+    run(main)
