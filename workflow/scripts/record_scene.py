@@ -24,6 +24,16 @@ from placing.recordings.writer import write_recording
 
 log = logging.getLogger(__name__)
 
+COLUMNS = {
+    "answers": PLACEMENT_COLUMNS,
+    "poses": POSE_COLUMNS,
+    "scores": SCORE_COLUMNS,
+    "traces": TRACE_COLUMNS,
+    "diagnoses": DIAGNOSTIC_COLUMNS,
+    "explanations": EXPLANATION_COLUMNS,
+}
+"""The tables of a recording and their columns."""
+
 
 def main(
     dataset: str,
@@ -67,26 +77,21 @@ def main(
     if method not in methods:
         raise unknown(f"method of {arrangements}", method, methods)
     job = Job(dataset, task, method, fold, seed)
+    paths = arrangements, poses, scores, traces, diagnostics, explanations
     read = {
-        "answers": _of_scenes(arrangements, PLACEMENT_COLUMNS, method),
-        "poses": _of_scenes(poses, POSE_COLUMNS, method),
-        "scores": _of_scenes(scores, SCORE_COLUMNS, method),
-        "traces": _of_scenes(traces, TRACE_COLUMNS, method),
-        "diagnoses": _of_scenes(diagnostics, DIAGNOSTIC_COLUMNS, method),
-        "explanations": _of_scenes(explanations, EXPLANATION_COLUMNS, method),
+        name: _of_scenes(path, columns, method)
+        for (name, columns), path in zip(COLUMNS.items(), paths, strict=True)
     }
+    recordings.mkdir(parents=True, exist_ok=True)
     for path in tqdm(sorted(scenes.glob("*.json")), unit="scene", disable=None):
-        scene = read_scene(path)
-        content = scene_recording(
-            job,
-            scene,
-            read_ply(clouds / f"{scene.scene}.ply"),
-            *read_features(features / f"{scene.scene}.npz"),
-            read_densities(densities / f"{scene.scene}.npz"),
-            Tables(**{name: of(scene.scene) for name, of in read.items()}),
+        name = path.stem
+        tables = Tables(**{of: rows(name) for of, rows in read.items()})
+        seen = read_ply(clouds / f"{name}.ply")
+        model = (read_scene(path), seen, *read_features(features / f"{name}.npz"))
+        dense = read_densities(densities / f"{name}.npz")
+        write_recording(
+            recordings / f"{name}.rrd", scene_recording(job, *model, dense, tables)
         )
-        recordings.mkdir(parents=True, exist_ok=True)
-        write_recording(recordings / f"{scene.scene}.rrd", content)
     log.info("%s fold %d %s: recorded", dataset, fold, task)
 
 
