@@ -24,6 +24,11 @@ rule all:
 
 include: "workflow/rules/scenes.smk"
 include: "workflow/rules/placing.smk"
+include: "workflow/rules/stability.smk"
+include: "workflow/rules/semantics.smk"
+include: "workflow/rules/joint.smk"
+include: "workflow/rules/rating.smk"
+include: "workflow/rules/recording_joint.smk"
 include: "workflow/rules/figure6.smk"
 include: "workflow/rules/pictures.smk"
 include: "workflow/rules/checks.smk"

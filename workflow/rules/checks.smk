@@ -3,7 +3,7 @@
 OUTPUTS
 
     results/{dataset}/checks/areas.csv           placing areas found, by furniture kind
-    results/rooms/checks/arrangements.csv        whether what labellers placed stays put
+    results/{dataset}/checks/arrangements.csv    whether what labellers placed stays put
     results/thor/checks/support.csv              whether what designers placed is supported
     results/thor/checks/left_out.csv             what became of each type of thing
     results/{dataset}/checks/passed.txt          every claim about the artifacts holds
@@ -27,6 +27,7 @@ rule check_areas:
         "results/benchmarks/check_areas/{dataset}.tsv"
     params:
         code=digest("check_areas"),
+        rooms=folder_of,
         min_clearance_m=config["areas"]["min_clearance_m"],
         max_height_m=config["areas"]["max_height_m"],
         tolerance_m=config["coverage"]["tolerance_m"],
@@ -34,7 +35,7 @@ rule check_areas:
         r"""
         python workflow/scripts/check_areas.py \
             --dataset {wildcards.dataset:q} \
-            --rooms resources/rooms \
+            --rooms {params.rooms:q} \
             --schema {input.room_schema:q} \
             --catalogue {input.catalogue:q} \
             --types {input.types:q} \
@@ -50,23 +51,25 @@ rule check_areas:
 rule settle_arrangements:
     """Let physics settle every labelled arrangement and measure what moved."""
     input:
-        rooms=ROOM_FILES,
+        rooms=room_files,
         room_schema="workflow/schemas/room.schema.yaml",
         catalogue="config/objects.csv",
     output:
-        checks="results/rooms/checks/arrangements.csv",
+        checks="results/{dataset}/checks/arrangements.csv",
     log:
-        "results/logs/settle_arrangements.log",
+        "results/logs/settle_arrangements/{dataset}.log",
     benchmark:
-        "results/benchmarks/settle_arrangements.tsv"
+        "results/benchmarks/settle_arrangements/{dataset}.tsv"
     params:
         code=digest("settle_arrangements"),
-        scenes=ROOM_SCENES,
+        rooms=folder_of,
+        scenes=scenes_of,
         settling=flags("settling"),
     shell:
         r"""
         python workflow/scripts/settle_arrangements.py \
-            --rooms resources/rooms \
+            --dataset {wildcards.dataset:q} \
+            --rooms {params.rooms:q} \
             --scenes {params.scenes:q} \
             --schema {input.room_schema:q} \
             --catalogue {input.catalogue:q} \
@@ -132,7 +135,7 @@ rule check_artifacts:
 rule describe_run:
     """Write down what was run, with which versions, on what machine and how long."""
     input:
-        passed=expand("results/{dataset}/checks/passed.txt", dataset=DATASETS),
+        passed=expand("results/{dataset}/checks/passed.txt", dataset=STUDIED),
     output:
         described="results/run.json",
     log:

@@ -24,6 +24,8 @@ os.environ.setdefault("NUMBA_CACHE_DIR", str(Path(".cache/numba").absolute()))
 os.environ.setdefault("PYTHONHASHSEED", "0")
 os.environ.setdefault("MPLBACKEND", "Agg")
 
+SCANS = "scans"
+"""The data set that is arranged with what all folds of `rooms` teach."""
 TASKS = ["filled", "empty"]
 ANSWERING = ["candidates", "sampling", "diagnostics", "arranging"]
 ANSWERING += ["decision", "baselines"]
@@ -44,16 +46,25 @@ def checked_scenes():
     """Return the rows of the sheet of scenes."""
     sheet = Path("config/scenes.csv")
     rows = sheets.read_sheet(sheet, schema_of("scenes"), key=("dataset", "scene"))
-    known = sorted(path.stem for path in Path("resources/rooms").glob("*.yaml"))
+    known, scanned = (
+        sorted(path.stem for path in Path(f"resources/{folder}").glob("*.yaml"))
+        for folder in ("rooms", SCANS)
+    )
     for row in rows:
         folds = {other["fold"] for other in rows if other["dataset"] == row["dataset"]}
-        if len(folds) < 2:
+        if len(folds) < 2 and row["dataset"] != SCANS:
             raise BadInput(
                 f"{sheet}: fold: value {row['fold']} in every row of data set"
                 f" {row['dataset']!r}; expected at least two folds"
             )
         if row["dataset"] == "rooms" and row["scene"] not in known:
             raise unknown(f"scene in {sheet}:", row["scene"], known)
+        if row["dataset"] == SCANS and row["scene"] not in scanned:
+            raise unknown(f"scene in {sheet}:", row["scene"], scanned)
+        if row["dataset"] == SCANS and "rooms" not in {r["dataset"] for r in rows}:
+            raise BadInput(
+                f"{sheet}: dataset: value 'scans'; expected rooms too, to learn from"
+            )
     return rows
 
 
@@ -64,12 +75,17 @@ except PlacingError as error:
     sys.exit(f"Error: {error}")
 
 DATASETS = sorted({row["dataset"] for row in SCENES})
+STUDIED = [dataset for dataset in DATASETS if dataset != SCANS]
+"""The data sets of figure 6, which learn from their own other folds."""
 FOLDS = {
     dataset: sorted({row["fold"] for row in SCENES if row["dataset"] == dataset})
     for dataset in DATASETS
 }
 ROOM_SCENES = [row["scene"] for row in SCENES if row["dataset"] == "rooms"]
-ROOM_FILES = [f"resources/rooms/{scene}.yaml" for scene in ROOM_SCENES]
+SCAN_SCENES = [row["scene"] for row in SCENES if row["dataset"] == SCANS]
+SCAN_FILES = [f"resources/scans/{scene}.yaml" for scene in SCAN_SCENES]
+DESK = {"scene": "office2", "furniture": "desk1"}
+"""The desk of figure 7 of the paper: the large one among the scans."""
 OFFICE = next(
     (r for r in SCENES if (r["dataset"], r["kind"]) == ("rooms", "office")),
     {"scene": "none", "fold": 0},
@@ -81,7 +97,7 @@ wildcard_constraints:
     dataset="|".join(DATASETS),
     fold="|".join(sorted({str(row["fold"]) for row in SCENES})),
     task="|".join(TASKS),
-    held_out=r"fold\d+(_fold\d+)?",
+    held_out=r"all|fold\d+(_fold\d+)?",
 
 
 def scenes_of(wildcards):
@@ -95,10 +111,11 @@ def scenes_of(wildcards):
 
 
 def room_files(wildcards):
-    """Return the room files that a job reads; other data sets have none."""
-    if wildcards.dataset != "rooms":
+    """Return the room files that a job reads; designers' rooms have none."""
+    if wildcards.dataset == "thor":
         return []
-    return [f"resources/rooms/{scene}.yaml" for scene in scenes_of(wildcards)]
+    folder = f"resources/{wildcards.dataset}"
+    return [f"{folder}/{scene}.yaml" for scene in scenes_of(wildcards)]
 
 
 def every(path, dataset):
@@ -130,7 +147,7 @@ def leaves():
     ]
     found = [
         file
-        for dataset in DATASETS
+        for dataset in STUDIED
         for path in paths
         for file in every(f"results/{{dataset}}/{path}", dataset)
     ]
@@ -140,7 +157,16 @@ def leaves():
         found.append("results/rooms/tables/sensitivity.md")
     if OFFICE["scene"] in ROOM_SCENES:
         found += [f"results/rooms/figures/figure{n}.png" for n in (4, 5)]
-    return found
+    return found + leaves_of_scans() if SCAN_SCENES else found
+
+
+def leaves_of_scans():
+    """Return what the point-cloud scenes are for."""
+    names = ["tables/table2.md", "checks/joint.csv", "checks/areas.csv"]
+    names += ["checks/arrangements.csv", "recordings/fold0"]
+    names += [f"pictures/{name}.png" for name in ("rooms", "arrangements")]
+    names += ["figures/figure7.png"] if DESK["scene"] in SCAN_SCENES else []
+    return [f"results/scans/{name}" for name in names]
 
 
 def of_every_fold(path):
@@ -168,7 +194,10 @@ def of_other_folds(path):
 
 
 def of_folds_left(path):
-    """Return the input function that gives `path` in the folds not held out."""
+    """Return the input function that gives `path` in the folds not held out.
+
+    `all` holds out none.
+    """
     return lambda wildcards: [
         path.format(dataset=wildcards.dataset, fold=fold)
         for fold in FOLDS[wildcards.dataset]

@@ -83,31 +83,64 @@ rule picture_objects:
 rule picture_rooms:
     """Draw every room, bare and as every labeller arranged it."""
     input:
-        rooms=ROOM_FILES,
+        rooms=room_files,
         room_schema="workflow/schemas/room.schema.yaml",
         catalogue="config/objects.csv",
     output:
-        rooms=directory("results/rooms/pictures/rooms"),
-        arrangements=directory("results/rooms/pictures/arrangements"),
-        sheet_rooms="results/rooms/pictures/rooms.png",
-        sheet_arrangements="results/rooms/pictures/arrangements.png",
+        rooms=directory("results/{dataset}/pictures/rooms"),
+        arrangements=directory("results/{dataset}/pictures/arrangements"),
+        sheet_rooms="results/{dataset}/pictures/rooms.png",
+        sheet_arrangements="results/{dataset}/pictures/arrangements.png",
     log:
-        "results/logs/picture_rooms.log",
+        "results/logs/picture_rooms/{dataset}.log",
     benchmark:
-        "results/benchmarks/picture_rooms.tsv"
+        "results/benchmarks/picture_rooms/{dataset}.tsv"
     params:
         code=digest("picture_rooms"),
-        scenes=ROOM_SCENES,
+        rooms=folder_of,
+        scenes=scenes_of,
     shell:
         r"""
         python workflow/scripts/picture_rooms.py \
-            --rooms resources/rooms \
+            --rooms {params.rooms:q} \
             --scenes {params.scenes:q} \
             --schema {input.room_schema:q} \
             --catalogue {input.catalogue:q} \
-            --pictures results/rooms/pictures \
+            --pictures results/{wildcards.dataset:q}/pictures \
             --sheet-rooms {output.sheet_rooms:q} \
             --sheet-arrangements {output.sheet_arrangements:q} \
+            2>{log:q}
+        """
+
+
+rule picture_desk:
+    """Draw one desk as object context and as human context arrange it."""
+    input:
+        joint="results/scans/joint/fold0.parquet",
+        room=f"resources/scans/{DESK['scene']}.yaml",
+        room_schema="workflow/schemas/room.schema.yaml",
+        catalogue="config/objects.csv",
+    output:
+        figure="results/scans/figures/figure7.png",
+    log:
+        "results/logs/picture_desk.log",
+    benchmark:
+        "results/benchmarks/picture_desk.tsv"
+    params:
+        code=digest("picture_desk"),
+        scene=DESK["scene"],
+        desk=DESK["furniture"],
+    shell:
+        r"""
+        python workflow/scripts/picture_desk.py \
+            --dataset scans \
+            --scene {params.scene:q} \
+            --desk {params.desk:q} \
+            --joint {input.joint:q} \
+            --rooms resources/scans \
+            --schema {input.room_schema:q} \
+            --catalogue {input.catalogue:q} \
+            --figure {output.figure:q} \
             2>{log:q}
         """
 
