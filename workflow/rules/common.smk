@@ -155,6 +155,7 @@ def leaves():
         names = ["objects", "rooms", "arrangements"]
         found += [f"results/rooms/pictures/{name}.png" for name in names]
         found.append("results/rooms/tables/sensitivity.md")
+        found.append("results/rooms/tables/semantics.csv")
     if OFFICE["scene"] in ROOM_SCENES:
         found += [f"results/rooms/figures/figure{n}.png" for n in (4, 5)]
     return found + leaves_of_scans() if SCAN_SCENES else found
@@ -212,6 +213,24 @@ def of_pairs(path):
         for fold in FOLDS[wildcards.dataset]
         if str(fold) != wildcards.fold
     ]
+
+
+def folder_of(wildcards):
+    """Return the folder of the room files of a data set."""
+    return f"resources/{'scans' if wildcards.dataset == 'scans' else 'rooms'}"
+
+
+def taught(path):
+    """Return the input function that gives what teaches the scenes of a job."""
+    return lambda wildcards: path.format(
+        held_out="all" if wildcards.dataset == SCANS else f"fold{wildcards.fold}"
+    )
+
+
+def tuned(wildcards):
+    """Return what training scenes chose, by fold that they were chosen without."""
+    own = [wildcards.fold] if wildcards.dataset != SCANS else FOLDS["rooms"]
+    return [f"results/rooms/tuning/fold{fold}.json" for fold in own]
 
 
 def pair_of(wildcards, other):

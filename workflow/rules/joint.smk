@@ -19,19 +19,6 @@ OUTPUTS
 """
 
 
-def taught(path):
-    """Return the input function that gives what teaches the scenes of a job."""
-    return lambda wildcards: path.format(
-        held_out="all" if wildcards.dataset == SCANS else f"fold{wildcards.fold}"
-    )
-
-
-def tuned(wildcards):
-    """Return what training scenes chose, by fold that they were chosen without."""
-    own = [wildcards.fold] if wildcards.dataset != SCANS else FOLDS["rooms"]
-    return [f"results/rooms/tuning/fold{fold}.json" for fold in own]
-
-
 rule propose_placements:
     """Propose placements of the objects of every empty scene of a fold."""
     input:

@@ -15,11 +15,6 @@ OUTPUTS
 """
 
 
-def folder_of(wildcards):
-    """Return the folder of the room files of a data set."""
-    return f"resources/{'scans' if wildcards.dataset == 'scans' else 'rooms'}"
-
-
 rule preprocess_cloud:
     """Scan the scenes of a fold and clean their clouds."""
     input:
