@@ -72,6 +72,8 @@ def options_of(
     options, rows = [], []
     for i in range(n_objects):
         of_object = np.flatnonzero(proposals.object == i)
+        roomy = of_object[proposals.has_room[of_object]]
+        of_object = roomy if len(roomy) else of_object
         stability = proposals.log_stability[of_object]
         # ASSUME: every context chooses among what stays put; where nothing is sure to,
         # among what is nearly as likely to as the best.

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from placing.answering import Asked
+from placing.elbow_room import has_room
 from placing.options import Options, thin_options
 from placing.psi_object import PsiObject, box_of
 from placing.scene import SceneObject
@@ -34,6 +35,10 @@ class ProposalConfig:
     """Places that a method finds likeliest for an object."""
     n_spread: int
     """Places beside them, far from each other."""
+    room_m: float
+    """Free width beside an object."""
+    lift_m: float
+    """What is lower above its bottom is what it stands on, not beside it."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +57,8 @@ class Proposals:
     """(o, 7)."""
     box: Array
     """(o, 7) centre, size and yaw."""
+    has_room: NDArray[np.bool_]
+    """(o,) whether nothing is too near beside it, see `elbow_room`."""
     log_stability: Array
     """(o,) log Psi_stability."""
     log_semantics: Array
@@ -98,6 +105,7 @@ def propose(
     boxes = [box_of(psi.cloud(item), way.quaternion) for way in ways]
     area = model.candidates.area[places]
     args = stands.orientation, stands.T_world_object, model.yaws
+    box = _boxes(boxes, *args).reshape(-1, 7)
     human = {m: _log_human(asked, item, m, places, smooth[m]) for m in HUMAN}
     turn = _log_shares(stands.log_psi)
     with np.errstate(divide="ignore"):  # a place that no method likes stays so
@@ -108,7 +116,11 @@ def propose(
         heading=np.tile(np.arange(y), k),
         orientation=names[stands.orientation.ravel()],
         T_world_object=stands.T_world_object.reshape(-1, 7),
-        box=_boxes(boxes, *args).reshape(-1, 7),
+        box=box,
+        has_room=has_room(
+            *(psi.field.points, model.scene.areas, box, np.repeat(area, y)),
+            *(config.room_m, config.lift_m),
+        ),
         log_stability=stands.log_stability.ravel(),
         log_semantics=np.broadcast_to(
             psi.log_semantics(item)[area][:, None], shape

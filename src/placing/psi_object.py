@@ -93,7 +93,7 @@ class PsiObject:
                 f"model of stability: features: {names}; expected those of this"
                 " version: learn it again"
             )
-        self._field = PlacingField(cloud, self.config.cell_m)
+        self.field = PlacingField(cloud, self.config.cell_m)
         self._areas = describe_areas(cloud, scene.areas, candidates)
         self._clouds: dict[str, ObjectCloud] = {}
         self._ways: dict[str, tuple[Orientation, ...]] = {}
@@ -200,9 +200,9 @@ class PsiObject:
         quaternion = np.tile(of_yaw, (len(places), 1))  # (c, 4)
         at = np.repeat(self.candidates.location[places], len(yaws), axis=0)  # (c, 3)
         cloud = self.cloud(item)
-        args = self._field, cloud, quaternion, at[:, :2], at[:, 2]
+        args = self.field, cloud, quaternion, at[:, :2], at[:, 2]
         T = np.column_stack([quaternion, at[:, :2], rest_heights(*args)])
-        features = stability_features(self._field, cloud, T, at[:, 2])
+        features = stability_features(self.field, cloud, T, at[:, 2])
         log_stability = log_psi_stability(self._stability, features)
         return Stands(
             np.full(shape, way),

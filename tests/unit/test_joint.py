@@ -45,6 +45,7 @@ def proposals(scene, candidates, rng, n=40):
         columns["orientation"].append(np.full(n, "upright"))
         columns["T_world_object"].append(np.hstack([upright, centre]))
         columns["box"].append(np.column_stack([centre, size, np.zeros(n)]))
+        columns["has_room"].append(np.ones(n, np.bool_))
         columns["log_stability"].append(np.log(rng.uniform(0.5, 1, n)))
         for name in columns:
             if name.startswith("log_") and name != "log_stability":

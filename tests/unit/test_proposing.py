@@ -60,7 +60,7 @@ def psi(model):
 @pytest.fixture(scope="module")
 def proposed(model, psi):
     stream = partial(generator, 0, "test")
-    config = ProposalConfig(20, 10)
+    config = ProposalConfig(20, 10, 0.02, 0.03)
     return propose_for(stream, model, psi, Choices(2, 0.5), config)
 
 
