@@ -94,7 +94,8 @@ def learn_semantics(
     # Each scene is also learned from as if nobody knew what is soft, so that the model
     # has an answer for scenes of both sorts.
     both = [(one, unaware(one)) for one in labelled]
-    parts = [p for p in np.array_split(rng.permutation(len(both)), config.n_parts)]
+    n_parts = min(config.n_parts, len(both))
+    parts = list(np.array_split(rng.permutation(len(both)), n_parts))
     tried = {}
     for width in config.widths:
         held_out = _cross_validate(rng, both, parts, width, config)
@@ -140,7 +141,9 @@ def _cross_validate(
     found: dict[float, dict[int, Array]] = {c: {} for c in config.looseness}
     for part in parts:
         held_out = set(part.tolist())
-        rest = [one for i, pair in enumerate(both) if i not in held_out for one in pair]
+        # Of a single scene nothing is left to hold out.
+        left = [i for i in range(len(both)) if i not in held_out] or part.tolist()
+        rest = [one for i in left for one in both[i]]
         models = _fit(rng, rest, width, config.looseness, config.n_landmarks)
         for c, model in models.items():
             for i in part.tolist():

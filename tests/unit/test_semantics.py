@@ -147,6 +147,13 @@ def test_the_same_seed_learns_the_same():
     assert AREA_DESCRIPTORS[-2:] == ("softness", "is_softness_known")
 
 
+def test_a_single_scene_is_enough_to_learn_from():
+    one = labelled(3)
+    model = learn_semantics(generator(0, "one"), [one], CONFIG)
+    odds = log_odds(model, one.objects, one.areas)
+    assert odds[0, TABLE] > odds[0, COUCH]
+
+
 def test_what_stands_on_an_object_counts_for_the_area_below():
     scene, _ = study_scene()
     book = SceneObject("b", "book", "book", (0.2, 0.2, 0.04), 0.5, True, True)
