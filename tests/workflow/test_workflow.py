@@ -110,7 +110,7 @@ def test_the_linter_complains_about_containers_only(project):
 def test_the_real_study_can_be_planned(project):
     shutil.copy(ROOT / "config" / "scenes.csv", project / "config" / "scenes.csv")
     jobs = planned(snakemake(project, "-n"))
-    # Without each fold and each pair of two data sets, and with all of one for the scans.
+    # Without each fold and each pair, in two data sets; with all of one for the scans.
     assert jobs["learn_theta"] == 2 * (5 + 10) + 1
     assert jobs["tune_methods"] == 10
     assert jobs["sample_arrangement"] == 10
