@@ -58,7 +58,6 @@ rule learn_stability:
         "results/logs/learn_stability.log",
     benchmark:
         "results/benchmarks/learn_stability.tsv"
-    threads: 2
     params:
         code=digest("learn_stability"),
         seed=config["seed"],
