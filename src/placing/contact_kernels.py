@@ -70,37 +70,6 @@ HELD_FEATURES = (
     "held_margin_m",
     "held_tipping",
 )
-CONTACT_FEATURES = (
-    "contact_share",
-    "base_contact_share",
-    "log_contacts",
-    "overhang",
-    "slope",
-    "slope_max",
-    "gap_mean_m",
-    "gap_spread_m",
-    "gap_max_m",
-    "support_height",
-    "contact_spread_m",
-)
-HULL_FEATURES = (
-    "margin_m",
-    "tipping",
-    "near_margin_m",
-    "near_tipping",
-    "contact_width_m",
-    "contact_length_m",
-)
-SPACE_FEATURES = ("gap_below_mass_m", "above_area_m", "clearance_m")
-CUT_FEATURES = ("cut_m", "cut_deepest_m", "cut_share", "log_cut")
-HELD_FEATURES = (
-    "held",
-    "held_high",
-    "held_opposed",
-    "held_gap_m",
-    "held_margin_m",
-    "held_tipping",
-)
 PLACED_FEATURES = (
     CONTACT_FEATURES + HULL_FEATURES + SPACE_FEATURES + CUT_FEATURES + HELD_FEATURES
 )

@@ -5,19 +5,19 @@ the best of the placements of an object in an area stays (precision at 1), how m
 the five best do, and the area under the ROC curve.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from placing.report import row_of
 from placing.stability import (
     StabilityConfig,
     StabilityModel,
     calibrated,
     fit_trees,
-    log_psi_stability,
     sum_trees,
 )
 
@@ -68,7 +68,7 @@ def models_without(
         for kind in known:
             used = (folds != fold) & (kinds != kind)
             models[kind, fold] = fit_trees(names, features[used], stays[used], config)
-    sums = held_out_sums(models, features, table, folds)
+    sums = held_out(models, features, table, folds, sum_trees)
     # What calibrates a model are the held-out sums of the trials that it learned from.
     return {
         (kind, fold): calibrated(model, sums[used], stays[used])
@@ -77,33 +77,19 @@ def models_without(
     }
 
 
-def held_out_sums(
+def held_out(
     models: Models,
     features: NDArray,
     table: pd.DataFrame,
     folds: NDArray[np.integer],
+    score: Callable[[StabilityModel, NDArray], Array],
 ) -> Array:
-    """Return the log odds of each trial by a model that did not see it, (c,)."""
-    sums = np.zeros(len(table))
-    for (kind, fold), model in models.items():
-        rows = np.flatnonzero((table["fixture"] == kind) & (folds == fold))
-        if len(rows):
-            sums[rows] = sum_trees(model, features[rows])
-    return sums
-
-
-def held_out_scores(
-    models: Models,
-    features: NDArray,
-    table: pd.DataFrame,
-    folds: NDArray[np.integer],
-) -> Array:
-    """Return the log probability of each trial by a model that did not see it, (c,)."""
+    """Return the score of each trial by a model that did not see it, shape (c,)."""
     scores = np.zeros(len(table))
     for (kind, fold), model in models.items():
         rows = np.flatnonzero((table["fixture"] == kind) & (folds == fold))
         if len(rows):
-            scores[rows] = log_psi_stability(model, features[rows])
+            scores[rows] = score(model, features[rows])
     return scores
 
 
@@ -172,14 +158,14 @@ def stability_markdown(report: pd.DataFrame) -> str:
     for column in REPORT_COLUMNS[3:]:
         shown[column] = [_cell(column, value) for value in report[column]]
     heads = [name.replace("_", " ") for name in REPORT_COLUMNS]
-    lines = ["# Stability of placements", "", _row(heads), _row(["---"] * len(heads))]
-    lines += [_row([str(value) for value in row]) for row in shown.to_numpy()]
+    lines = [
+        "# Stability of placements",
+        "",
+        row_of(heads),
+        row_of(["---"] * len(heads)),
+    ]
+    lines += [row_of([str(value) for value in row]) for row in shown.to_numpy()]
     return "\n".join([*lines, "", *NOTES, ""])
-
-
-def _row(cells: Sequence[str]) -> str:
-    """Return a line of a table."""
-    return "| " + " | ".join(cells) + " |"
 
 
 def _cell(column: str, value: float) -> str:

@@ -26,7 +26,7 @@ from placing.stability_report import (
     SAME,
     area_under_curve,
     calibration_error,
-    held_out_scores,
+    held_out,
     models_without,
     precision_at,
     report_rows,
@@ -199,7 +199,7 @@ def test_models_of_a_protocol_never_saw_what_they_are_asked_about(monkeypatch):
 def test_the_report_finds_what_can_be_known():
     features, table, chance = tried()
     models = models_without(NAMES, features, table, folds(), SAME, CONFIG)
-    scores = held_out_scores(models, features, table, folds())
+    scores = held_out(models, features, table, folds(), log_psi_stability)
     chosen = table.head(10).assign(stays=[True] * 9 + [False])
     rows = report_rows(SAME, table, scores, chosen)
     assert [row["fixture"] for row in rows] == ["shelf", "table", ALL]

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 from command import run
-from placing.artifacts.atomic import replacing
 from placing.artifacts.formats import read_table, write_csv, write_table
 from placing.artifacts.stability import write_stability
 from placing.clouds.cloud import CloudConfig
@@ -24,12 +23,18 @@ from placing.physics.grounds import grounds_of, pieces_of_fixtures
 from placing.physics.settling import SettleConfig
 from placing.physics.things import things_of
 from placing.physics.trials import TRIAL_COLUMNS, TrialsConfig
+from placing.report import write_text
 from placing.rooms.catalogue import read_catalogue
-from placing.stability import StabilityConfig, folds_of, learn_stability
+from placing.stability import (
+    StabilityConfig,
+    folds_of,
+    learn_stability,
+    log_psi_stability,
+)
 from placing.stability_report import (
     PROTOCOLS,
     REPORT_COLUMNS,
-    held_out_scores,
+    held_out,
     models_without,
     report_rows,
     stability_markdown,
@@ -93,11 +98,11 @@ def main(
     parts = grounds, things, fold_of, models
     chosen = _chosen_again(seed, parts, trials, settling.margin_m, stability, settle)
     write_table(chosen_file, chosen)
-    scores = {p: held_out_scores(models[p], features, tried, folds) for p in PROTOCOLS}
+    told = features, tried, folds, log_psi_stability
+    scores = {protocol: held_out(models[protocol], *told) for protocol in PROTOCOLS}
     report = _report(tried, scores, chosen)
     write_csv(table, report)
-    with replacing(markdown) as part:
-        part.write_text(stability_markdown(report))
+    write_text(markdown, stability_markdown(report))
     overall = report[report["fixture"] == "all"]
     log.info("%s", overall.to_string(index=False))
 

@@ -6,9 +6,9 @@ from command import run
 from placing.artifacts.formats import read_table
 from placing.errors import unknown
 from placing.joint import JOINT_COLUMNS
-from placing.layouts import layout_reader
 from placing.pictures.desk import draw_desk
 from placing.pictures.renderer import write_picture
+from placing.rooms.reader import layout_reader
 from placing.table2_answers import placements_of
 
 PANELS = {"object_context": "object context", "dp": "human context (DP)"}
@@ -41,7 +41,7 @@ def main(
     scenes = sorted(table["scene"].unique())
     if scene not in scenes:
         raise unknown(f"scene of {joint}", scene, scenes)
-    layout = layout_reader(dataset, rooms, schema, catalogue, Path())(scene)
+    layout = layout_reader(rooms, schema, catalogue)(scene)
     rows = table[table["scene"] == scene]
     arranged = {
         caption: list(placements_of(rows[rows["method"] == method]))

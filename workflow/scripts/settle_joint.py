@@ -12,10 +12,10 @@ from tqdm import tqdm
 from command import run
 from placing.artifacts.formats import read_table, write_csv
 from placing.joint import JOINT_COLUMNS
-from placing.layouts import layout_reader
 from placing.physics.arrangements import bodies_of, fixed_of
 from placing.physics.joint_check import check_joint
 from placing.physics.settling import SettleConfig
+from placing.rooms.reader import layout_reader
 from placing.table2_answers import placements_of
 
 log = logging.getLogger(__name__)
@@ -47,7 +47,7 @@ def main(
         settling: What counts as staying put.
     """
     table = pd.concat([read_table(path, JOINT_COLUMNS) for path in joint])
-    read = layout_reader(dataset, rooms, schema, catalogue, Path())
+    read = layout_reader(rooms, schema, catalogue)
     layouts = {scene: read(scene) for scene in sorted(table["scene"].unique())}
     used = {o.object_id: o for layout in layouts.values() for o in layout.objects}
     bodies = bodies_of(used.values(), settling.margin_m)

@@ -4,8 +4,7 @@ Chosen by what is learned from other objects, settled for the full time: whether
 stability recommends stays put in a simulation that had no part in learning.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 import pandas as pd
@@ -15,6 +14,7 @@ from placing.contacts import stability_features
 from placing.physics.arrangements import unrest
 from placing.physics.bodies import Body, Piece
 from placing.physics.grounds import Ground, Key
+from placing.physics.running import run_trials
 from placing.physics.settling import SettleConfig, settle
 from placing.physics.things import Thing
 from placing.physics.trials import (
@@ -24,7 +24,6 @@ from placing.physics.trials import (
     groups_of,
     lowered,
 )
-from placing.physics.watching import keep_freed_memory
 from placing.rigid import Array
 from placing.seeds import generator
 from placing.stability import StabilityModel, log_psi_stability
@@ -100,29 +99,19 @@ def settle_chosen(
     """Return whether each placement of a table stays when it settles for long."""
     same = ["fixture", "instance", "object", *POSE]
     once = table.drop_duplicates(same)  # what two protocols choose settles once
-    names = [f"{row.fixture}{row.instance}" for row in once.itertuples()]
-    poses = once[list(POSE)].to_numpy(float)
-    jobs = [
-        (fixed[fixture], name, bodies[name], pose, config, reach_m)
-        for fixture, name, pose in zip(names, once["object"], poses, strict=True)
-    ]
-    known = once[same].assign(found=_map(jobs, n_workers))
+    args = once, fixed, bodies, config, reach_m, n_workers
+    known = once[same].assign(found=list(run_trials(*args, let_go=stays_settled)))
     return table[same].merge(known, on=same, how="left")["found"].tolist()
 
 
-def _map(jobs: Sequence[tuple], n_workers: int) -> list[bool]:
-    """Return the outcomes of jobs in order, from as many processes."""
-    if n_workers == 1:
-        keep_freed_memory()
-        return [_settle(job) for job in jobs]
-    with ProcessPoolExecutor(n_workers, initializer=keep_freed_memory) as pool:
-        return list(pool.map(_settle, jobs, chunksize=25))
-
-
-def _settle(
-    job: tuple[Mapping[str, tuple[Piece, ...]], str, Body, Array, SettleConfig, float],
+def stays_settled(
+    fixed: Mapping[str, tuple[Piece, ...]],
+    body: Body,
+    T_world_body: Array,
+    config: SettleConfig,
+    reach_m: float,
 ) -> bool:
-    """Return whether an object that is put down at a pose on a fixture stays there."""
-    fixed, name, body, pose, config, reach_m = job
-    settled = settle(fixed, {name: (body, pose)}, config, reach_m)[name]
+    """Return whether an object that is put down on a fixture settles where it is."""
+    placed = {"body": (body, T_world_body)}
+    settled = settle(fixed, placed, config, reach_m)["body"]
     return not unrest(settled, config)

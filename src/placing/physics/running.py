@@ -1,8 +1,9 @@
 """Let go of many objects, each in its own world, in as many processes as wanted."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict
+from typing import Any
 
 import pandas as pd
 
@@ -20,18 +21,22 @@ def run_trials(
     config: SettleConfig,
     reach_m: float,
     n_workers: int,
-) -> Iterator[Watched]:
-    """Yield in order what each placement of a table does, and whether it stays."""
+    let_go: Callable[..., Any] = watch,
+) -> Iterator[Any]:
+    """Yield in order what `let_go` tells of each placement of a table.
+
+    It gets fixture, body, pose, settings and reach, as `watch` does, which tells what
+    an object does and whether it stays.
+    """
     names = [f"{row.fixture}{row.instance}" for row in table.itertuples()]
     poses = table[list(POSE)].to_numpy(float)
     jobs = list(zip(names, table["object"], poses, strict=True))
     if n_workers == 1:
-        _prepare(fixed, bodies, config, reach_m)
+        _prepare(fixed, bodies, config, reach_m, let_go)
         yield from map(_try, jobs)
         return
-    with ProcessPoolExecutor(
-        n_workers, None, _prepare, (fixed, bodies, config, reach_m)
-    ) as pool:
+    shared = fixed, bodies, config, reach_m, let_go
+    with ProcessPoolExecutor(n_workers, None, _prepare, shared) as pool:
         yield from pool.map(_try, jobs, chunksize=25)
 
 
@@ -44,17 +49,18 @@ def _prepare(
     bodies: Mapping[str, Body],
     config: SettleConfig,
     reach_m: float,
+    let_go: Callable[..., Any],
 ) -> None:
     """Keep what every trial needs in a worker."""
     keep_freed_memory()
-    _shared["all"] = (fixed, bodies, config, reach_m)
+    _shared["all"] = (fixed, bodies, config, reach_m, let_go)
 
 
-def _try(job: tuple[str, str, Array]) -> Watched:
+def _try(job: tuple[str, str, Array]) -> Any:  # noqa: ANN401 (what `let_go` tells)
     """Return what an object does that is let go at a pose on a fixture."""
     fixture, name, pose = job
-    fixed, bodies, config, reach_m = _shared["all"]
-    return watch(fixed[fixture], bodies[name], pose, config, reach_m)
+    fixed, bodies, config, reach_m, let_go = _shared["all"]
+    return let_go(fixed[fixture], bodies[name], pose, config, reach_m)
 
 
 def with_outcomes(table: pd.DataFrame, outcomes: Sequence[Watched]) -> pd.DataFrame:

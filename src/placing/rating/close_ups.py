@@ -3,12 +3,13 @@
 Shapes: e eyes around the object, s points of it.
 """
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
+from placing.clouds.raycaster import Raycaster
 from placing.dressing import Meshes
 from placing.pictures.cameras import Camera
 from placing.pictures.renderer import Picture, render
@@ -31,40 +32,34 @@ FEW = 0.1
 def close_ups(room: Meshes, objects: Meshes) -> dict[str, Picture]:
     """Return a picture of each object, walls and all furniture drawn."""
     names, meshes = list(objects), [*objects.values(), *room.values()]
-    caster = _Caster(meshes)
+    seer = _Seer(meshes)
     pictures = {}
     for number, name in enumerate(names):
-        camera = _camera(caster, number, objects[name])
+        camera = _camera(seer, number, objects[name])
         near = [mesh for mesh in meshes if _is_near(mesh, camera)]
         pictures[name] = render(near, camera, SIZE)
     return pictures
 
 
-class _Caster:
+class _Seer:
     """All meshes, ready to be asked whether one of them can be seen."""
 
-    def __init__(self, meshes: Iterable[trimesh.Trimesh]) -> None:
+    def __init__(self, meshes: Sequence[trimesh.Trimesh]) -> None:
         """Give each mesh its number."""
-        import open3d as o3d  # here, because it takes a second that few stages need
-
-        self._tensor = o3d.core.Tensor.from_numpy
-        self._scene = o3d.t.geometry.RaycastingScene()
-        for mesh in meshes:
-            self._scene.add_triangles(
-                self._tensor(np.array(mesh.vertices, np.float32)),
-                self._tensor(np.array(mesh.faces, np.uint32)),
-            )
+        self._caster = Raycaster(meshes)
+        self._first = np.cumsum([0, *(len(mesh.faces) for mesh in meshes)])
 
     def seen(self, number: int, eyes: Array, points: Array) -> Array:
         """Return the share of a mesh's points (s, 3) seen from each eye, (e,)."""
         ahead = points[None] - eyes[:, None]
         starts = np.broadcast_to(eyes[:, None], ahead.shape)
-        rays = np.concatenate([starts, ahead], axis=2).astype(np.float32)
-        hit = self._scene.cast_rays(self._tensor(np.ascontiguousarray(rays)))
-        return (hit["geometry_ids"].numpy() == number).mean(axis=1)
+        hits = self._caster.cast(starts.reshape(-1, 3), ahead.reshape(-1, 3))
+        first, end = self._first[number : number + 2]
+        is_seen = hits.is_hit & (hits.face >= first) & (hits.face < end)
+        return is_seen.reshape(len(eyes), -1).mean(axis=1)
 
 
-def _camera(caster: _Caster, number: int, mesh: trimesh.Trimesh) -> Camera:
+def _camera(seer: _Seer, number: int, mesh: trimesh.Trimesh) -> Camera:
     """Return the camera before an object that sees most of it."""
     low, high = mesh.bounds
     target, extent = (low + high) / 2, high - low
@@ -76,7 +71,7 @@ def _camera(caster: _Caster, number: int, mesh: trimesh.Trimesh) -> Camera:
     eyes = target + distance_m * away
     centres = mesh.triangles_center
     points = centres[np.linspace(0, len(centres) - 1, N_POINTS).astype(int)]
-    seen = caster.seen(number, eyes, points)
+    seen = seer.seen(number, eyes, points)
     best = int(np.flatnonzero(seen >= seen.max() - FEW)[0])
     return Camera(tuple(eyes[best]), tuple(target), FOV_DEG)
 
