@@ -13,6 +13,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
+from placing.answer_tables import LOCATION, ORIENTATION
 from placing.assignment import Assignment, assign
 from placing.assignment_config import AssignmentConfig
 from placing.candidates import Candidates
@@ -23,13 +24,11 @@ from placing.stacking import StackPair, stacked_boxes
 
 Array = NDArray[np.float64]
 
-JOINT_METHODS = ("object_context", "fmm", "dp", "dp_object_context")
-"""The methods of Table 2: object context, human context, and both."""
 NEARLY = 0.98
 """Share of the best Psi_stability that counts as nearly as good."""
 JOINT_COLUMNS = (
     *("dataset", "scene", "method", "object", "category", "area", "orientation"),
-    *("x_m", "y_m", "z_m", "qw", "qx", "qy", "qz", "on", "level", "log_psi"),
+    *(*LOCATION, *ORIENTATION, "on", "level", "log_psi"),
     *("log_psi_stability", "log_psi_semantics", "is_placed", "reason"),
     *("objective", "gap", "n_nodes"),
 )
@@ -142,7 +141,7 @@ def _row(
     lower = int(found.on[i])
     area = scene.areas[candidates.area[proposals.place[o]]].area
     values = (*T[4:], *T[:4])
-    named = zip(("x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"), values, strict=True)
+    named = zip((*LOCATION, *ORIENTATION), values, strict=True)
     return (
         row
         | {name: float(value) for name, value in named}
@@ -162,7 +161,7 @@ def _row(
 
 def nowhere(reason: str) -> dict[str, object]:
     """Return what is written of an object that is not placed."""
-    numbers = ("x_m", "y_m", "z_m", "qw", "qx", "qy", "qz", "log_psi")
+    numbers = (*LOCATION, *ORIENTATION, "log_psi")
     numbers += ("log_psi_stability", "log_psi_semantics")
     words = {"area": "", "orientation": "", "on": "", "level": 0}
     return (

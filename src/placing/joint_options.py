@@ -49,8 +49,6 @@ class Proposals:
     """(o,) number of the object."""
     place: Indices
     """(o,)."""
-    heading: Indices
-    """(o,) number of the heading."""
     orientation: NDArray[np.str_]
     """(o,) its name."""
     T_world_object: Array
@@ -63,8 +61,6 @@ class Proposals:
     """(o,) log Psi_stability."""
     log_semantics: Array
     """(o,) log Psi_semantics."""
-    log_share: Array
-    """(o,) log share of the orientation."""
     log_fmm: Array
     """(o,) log density of place and heading under the finite mixture."""
     log_dp: Array
@@ -113,7 +109,6 @@ def propose(
     return Proposals(
         object=np.full(k * y, number),
         place=np.repeat(places, y),
-        heading=np.tile(np.arange(y), k),
         orientation=names[stands.orientation.ravel()],
         T_world_object=stands.T_world_object.reshape(-1, 7),
         box=box,
@@ -125,7 +120,6 @@ def propose(
         log_semantics=np.broadcast_to(
             psi.log_semantics(item)[area][:, None], shape
         ).ravel(),
-        log_share=stands.log_share.ravel(),
         log_fmm=human["fmm"].ravel(),
         log_dp=human["dp"].ravel(),
         log_object_context=log_context.ravel(),

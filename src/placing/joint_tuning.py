@@ -12,7 +12,12 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from placing.likelihoods import ScoringConfig, fit, nearest_places, with_uniform
+from placing.likelihoods import (
+    ScoringConfig,
+    nearest_places,
+    nll_at,
+    with_uniform,
+)
 from placing.scene import Placement, Scene, SceneObject, extents, resting_point
 
 Array = NDArray[np.float64]
@@ -38,8 +43,9 @@ def weight_nll(
     nll = []
     for w in weights:
         mixed = w * densities["dp"] + (1 - w) * densities["object_context"]
+        full = [with_uniform(density, scoring) for density in mixed]
         of_label = [
-            fit(with_uniform(mixed[number[name]], scoring), [place], spacing_m)[0, 0]
+            nll_at(full[number[name]], np.array([place]), spacing_m)[0]
             for of in nearest.values()
             for name, place in of.items()
         ]

@@ -83,8 +83,13 @@ def with_uniform(density: Array, config: ScoringConfig) -> Array:
 def fit(mixed: Array, at: Sequence[int], spacing_m: float) -> Array:
     """Return nll and rank of the places `at` under a density (p,), shape (k, 2)."""
     places = np.array(at, np.intp)
-    nll = -np.log(mixed[places] / spacing_m**2)
+    nll = nll_at(mixed, places, spacing_m)
     return np.column_stack([nll, ranks_of(mixed, places)])
+
+
+def nll_at(mixed: Array, places: NDArray[np.intp], spacing_m: float) -> Array:
+    """Return nll of places under a density (p,), shape (k,) [nat, of 1/m²]."""
+    return -np.log(mixed[places] / spacing_m**2)
 
 
 def density_key(method: str, question: str, category: str) -> str:

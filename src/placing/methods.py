@@ -11,3 +11,11 @@ LABELS = "labels"
 """What answers with another labelled arrangement, beside the methods."""
 ORDER = (*METHODS, LABELS)
 """The rows of tables and the bars of figures."""
+JOINT_NAMES = {
+    "object_context": "object context",
+    "fmm": "human context (FMM)",
+    "dp": "human context (DP)",
+    "dp_object_context": "DP + object context",
+}
+"""The methods that arrange all objects together, by what Table 2 calls them."""
+JOINT_METHODS = tuple(JOINT_NAMES)

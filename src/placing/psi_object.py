@@ -97,6 +97,7 @@ class PsiObject:
         self._areas = describe_areas(cloud, scene.areas, candidates)
         self._clouds: dict[str, ObjectCloud] = {}
         self._ways: dict[str, tuple[Orientation, ...]] = {}
+        self._belongs: dict[str, Array] = {}
 
     def ways(self, item: SceneObject) -> tuple[Orientation, ...]:
         """Return the orientations of an object."""
@@ -116,9 +117,12 @@ class PsiObject:
         """Return log Psi_semantics of an object on each placing area, shape (m,)."""
         if not self.scene.areas:
             return np.empty(0)
-        shown = sample_object(item, self.config.object_spacing_m)
-        described = describe_object(item, shown)
-        return log_psi_semantics(self._semantics, described, self._areas)
+        if item.object_id not in self._belongs:
+            shown = sample_object(item, self.config.object_spacing_m)
+            args = describe_object(item, shown), self._areas
+            found = log_psi_semantics(self._semantics, *args)
+            self._belongs[item.object_id] = found
+        return self._belongs[item.object_id]
 
     def stands(
         self,

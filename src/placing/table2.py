@@ -9,8 +9,7 @@ Shapes: s scenes.
 import numpy as np
 import pandas as pd
 
-from placing.methods import LABELS
-from placing.table2_answers import LABELS_OF
+from placing.methods import JOINT_NAMES, LABELS
 from placing.table2_scores import CHANCE
 
 MAX_SCORE = 5.0
@@ -35,7 +34,7 @@ def cells(scores: pd.DataFrame) -> pd.DataFrame:
         by_method = dict(list(of_scene.groupby("method")))
         chance = _mean_error(by_method[CHANCE])
         spread = _mean_error(by_method[LABELS]) if LABELS in by_method else np.nan
-        for method in (*LABELS_OF, LABELS):
+        for method in (*JOINT_NAMES, LABELS):
             if method in by_method:
                 found = _cell(by_method[method], spread, chance)
                 rows.append((scene, method, *found, spread, chance))
@@ -63,7 +62,7 @@ def table2(of_cells: pd.DataFrame) -> pd.DataFrame:
     scenes = [scene for scene in SCENES if scene in found]
     scenes += sorted(found.difference(SCENES))
     rows = []
-    for method in LABELS_OF:
+    for method in JOINT_NAMES:
         of_method = of_cells[of_cells["method"] == method].set_index("scene")
         row: dict[str, object] = {"method": method}
         for scene in scenes:

@@ -1,22 +1,16 @@
 """What Table 2 compares: the placements of each method in the joint table."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 import pandas as pd
 
 from placing.answer_tables import LOCATION, ORIENTATION
 from placing.errors import BadArtifact
+from placing.methods import JOINT_METHODS
 from placing.scene import Placement, SceneObject
 
-LABELS_OF = {
-    "object_context": "object context",
-    "fmm": "human context (FMM)",
-    "dp": "human context (DP)",
-    "dp_object_context": "DP + object context",
-}
-"""The methods of Table 2 in its order, and what they are called there."""
-JOINT_COLUMNS = (
+ANSWER_COLUMNS = (
     *("scene", "method", "object", "area", "on", "is_placed", "reason"),
     *(*LOCATION, *ORIENTATION),
 )
@@ -29,14 +23,21 @@ def answers_of(
     """Yield each method with its rows (n) for a scene, in the order of `objects`."""
     names = [item.object_id for item in objects]
     of_scene = joint[joint["scene"] == scene]
-    for method in LABELS_OF:
+    for method in JOINT_METHODS:
         rows = of_scene[of_scene["method"] == method].set_index("object")
-        if sorted(rows.index) != sorted(names):
-            raise BadArtifact(
-                f"joint placements of {scene} by {method}: objects "
-                f"{sorted(rows.index)}; expected each of {sorted(names)} once"
-            )
+        check_objects(rows.index, names, scene, method)
         yield method, rows.loc[names].reset_index()
+
+
+def check_objects(
+    found: Iterable[str], names: Iterable[str], scene: str, method: str
+) -> None:
+    """Raise `BadArtifact` unless every object has been placed once."""
+    if sorted(found) != sorted(names):
+        raise BadArtifact(
+            f"joint placements of {scene} by {method}: objects {sorted(found)};"
+            f" expected each of {sorted(names)} once"
+        )
 
 
 def placements_of(rows: pd.DataFrame) -> tuple[Placement, ...]:

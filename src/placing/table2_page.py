@@ -4,9 +4,8 @@ from collections.abc import Callable, Sequence
 
 import pandas as pd
 
-from placing.methods import LABELS
+from placing.methods import JOINT_NAMES, LABELS
 from placing.report import row_of, with_error
-from placing.table2_answers import LABELS_OF
 
 INTRODUCTION = (
     "Data set `scans`: three offices and two apartments, made for this project and "
@@ -87,7 +86,7 @@ def _block(table: pd.DataFrame) -> str:
     heads = [f"{scene} {name}" for scene in scenes for name in ("Co", "Sc")]
     lines = _head(["method", *heads])
     for _, row in table.iterrows():
-        cells = [LABELS_OF[row["method"]]]
+        cells = [JOINT_NAMES[row["method"]]]
         for scene in scenes:
             cells.append(with_error(row[f"{scene}_co"], float("nan"), 0))
             cells.append(with_error(row[f"{scene}_sc"], float("nan"), 1))
@@ -122,7 +121,7 @@ def _details(of_cells: pd.DataFrame) -> str:
         lambda row: with_error(row["chance_m"], float("nan")),
     ]
     for _, row in of_cells.iterrows():
-        method = LABELS_OF.get(str(row["method"]), str(row["method"]))
+        method = JOINT_NAMES.get(str(row["method"]), str(row["method"]))
         lines.append(
             row_of([str(row["scene"]), method, *(show(row) for show in shown)])
         )

@@ -10,7 +10,6 @@ from study import study
 from placing.assignment_config import AssignmentConfig
 from placing.joint import (
     JOINT_COLUMNS,
-    JOINT_METHODS,
     JointConfig,
     arrange,
     log_scores,
@@ -18,6 +17,7 @@ from placing.joint import (
     stack_pairs,
 )
 from placing.joint_options import Proposals
+from placing.methods import JOINT_METHODS
 from placing.overlap import overlaps
 
 STUDY = Path(__file__).parents[2] / "config" / "config.yaml"
@@ -41,7 +41,6 @@ def proposals(scene, candidates, rng, n=40):
         size = np.tile(item.size_m, (n, 1))
         columns["object"].append(np.full(n, i))
         columns["place"].append(place)
-        columns["heading"].append(np.zeros(n, np.int64))
         columns["orientation"].append(np.full(n, "upright"))
         columns["T_world_object"].append(np.hstack([upright, centre]))
         columns["box"].append(np.column_stack([centre, size, np.zeros(n)]))

@@ -9,13 +9,13 @@ import pytest
 from sklearn.metrics import cohen_kappa_score
 
 from placing.errors import BadInput
+from placing.methods import JOINT_NAMES
 from placing.rating.agreement import agreement, cohen_kappa
 from placing.rating.answers import MAX_BYTES, rated_cells, read_ratings
 from placing.rating.blinding import Blinded, blinded
 from placing.rooms.file import read_yaml
 from placing.scene import Placement, SceneObject
 from placing.table2 import table2
-from placing.table2_answers import LABELS_OF
 
 SCHEMA = read_yaml(Path(__file__).parents[2] / "workflow/schemas/ratings.schema.yaml")
 HEADER = "rater,arrangement,question,answer\n"
@@ -145,7 +145,7 @@ def joint(shift=0.0):
     pose = (shift, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
     rows = [
         (scene, method, item.object_id, "area1", "", item.object_id != "cup", "", *pose)
-        for scene, method, item in product(("apt1", "apt2"), LABELS_OF, OBJECTS)
+        for scene, method, item in product(("apt1", "apt2"), JOINT_NAMES, OBJECTS)
     ]
     names = ["scene", "method", "object", "area", "on", "is_placed", "reason"]
     names += ["x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"]
@@ -157,10 +157,12 @@ def test_names_are_blind_and_follow_from_seed_and_placements():
     once = blinded(joint(), objects, 1)
     names = [one.name for one in once]
     assert len(set(names)) == 8
-    assert {(one.scene, one.method) for one in once} == set(product(objects, LABELS_OF))
+    assert {(one.scene, one.method) for one in once} == set(
+        product(objects, JOINT_NAMES)
+    )
     assert [one.unplaced for one in once] == [("cup",)] * 8
     assert names == [one.name for one in blinded(joint(), objects, 1)]
     assert not set(names) & {one.name for one in blinded(joint(0.01), objects, 1)}
     assert not set(names) & {one.name for one in blinded(joint(), objects, 2)}
     order = [(one.scene, one.method) for one in once]
-    assert order != list(product(objects, LABELS_OF))
+    assert order != list(product(objects, JOINT_NAMES))

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from placing.methods import JOINT_NAMES
 from placing.rating import close_ups, views
 from placing.rating.answers import read_ratings
 from placing.rating.blinding import Blinded
@@ -17,7 +18,6 @@ from placing.rating.page import entries_of, label_of, page_of
 from placing.rooms.file import read_yaml
 from placing.rooms.reader import layout_reader
 from placing.scene import Placement
-from placing.table2_answers import LABELS_OF
 
 ROOT = Path(__file__).parents[2]
 SCHEMAS = ROOT / "workflow" / "schemas"
@@ -159,7 +159,13 @@ def drawn(small_pictures):
 def test_the_page_names_no_method_and_loads_nothing(drawn):
     page = page_of(TEMPLATE, [drawn[1]])
     words = re.sub(r"data:image/jpeg;base64,[A-Za-z0-9+/=]+", "", page).lower()
-    names = [*LABELS_OF, *map(str.lower, LABELS_OF.values()), "fmm", "dp", "context"]
+    names = [
+        *JOINT_NAMES,
+        *map(str.lower, JOINT_NAMES.values()),
+        "fmm",
+        "dp",
+        "context",
+    ]
     for name in names:
         assert not re.search(rf"\b{re.escape(name)}\b", words), name
     assert "office1" not in words

@@ -10,9 +10,10 @@ import pytest
 
 from placing.candidates import Candidates
 from placing.errors import BadArtifact
+from placing.methods import JOINT_NAMES
 from placing.scene import Arrangement, Placement, Scene, SceneObject
 from placing.table2 import cells, score, table2
-from placing.table2_answers import LABELS_OF, answers_of, placements_of
+from placing.table2_answers import answers_of, placements_of
 from placing.table2_errors import answer_errors, chance_errors, matched_error
 from placing.table2_page import paper_table, table2_markdown
 from placing.table2_scores import score_scene
@@ -68,7 +69,7 @@ def scene(name="office1", labelled=LABELLED):
 def joint(name="office1", xy=((0, 0), (1, 0), (2, 0)), unplaced=()):
     """Return the same placements by every method."""
     rows = []
-    for method in LABELS_OF:
+    for method in JOINT_NAMES:
         for item, at in zip(OBJECTS, xy, strict=True):
             is_placed = item.object_id not in unplaced
             reason = "" if is_placed else "no room"
@@ -190,7 +191,7 @@ def test_averages_count_every_scene_once():
     tables = [scored(joint()), scored(joint("apt1", unplaced=["cup"]), scene("apt1"))]
     tables.append(scored(joint("office2"), scene("office2"), wrong=["cup", "book2"]))
     wide = table2(cells(pd.concat(tables)))
-    assert wide["method"].tolist() == list(LABELS_OF)
+    assert wide["method"].tolist() == list(JOINT_NAMES)
     heads = [
         "office1_co",
         "office1_sc",
@@ -232,7 +233,7 @@ def test_a_cell_follows_from_the_long_table():
 
 def test_the_papers_averages_are_unweighted_means_of_its_scenes():
     paper = paper_table(pd.read_csv(PAPER)).set_index("method")
-    assert list(paper.index) == list(LABELS_OF)
+    assert list(paper.index) == list(JOINT_NAMES)
     for name, within in (("co", 1.0), ("sc", 0.051)):
         scenes = [c for c in paper if c.endswith(f"_{name}") and "average" not in c]
         assert len(scenes) == 5

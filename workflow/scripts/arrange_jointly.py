@@ -16,12 +16,12 @@ from placing.artifacts.scenes import read_scene
 from placing.assignment_config import AssignmentConfig
 from placing.joint import (
     JOINT_COLUMNS,
-    JOINT_METHODS,
     JointConfig,
     arrange,
     log_scores,
     stack_pairs,
 )
+from placing.methods import JOINT_METHODS
 from placing.seeds import generator
 
 log = logging.getLogger(__name__)

@@ -5,13 +5,13 @@ from pathlib import Path
 from command import run
 from placing.artifacts.formats import read_table
 from placing.errors import unknown
-from placing.joint import JOINT_COLUMNS
+from placing.methods import JOINT_NAMES
 from placing.pictures.desk import draw_desk
 from placing.pictures.renderer import write_picture
 from placing.rooms.reader import layout_reader
-from placing.table2_answers import placements_of
+from placing.table2_answers import ANSWER_COLUMNS, placements_of
 
-PANELS = {"object_context": "object context", "dp": "human context (DP)"}
+PANELS = {method: JOINT_NAMES[method] for method in ("object_context", "dp")}
 SIZE = (1000, 750)
 
 
@@ -37,7 +37,7 @@ def main(
         catalogue: Table of objects.
         figure: PNG to write.
     """
-    table = read_table(joint, JOINT_COLUMNS)
+    table = read_table(joint, ANSWER_COLUMNS)
     scenes = sorted(table["scene"].unique())
     if scene not in scenes:
         raise unknown(f"scene of {joint}", scene, scenes)

@@ -11,7 +11,7 @@ from placing.rating.blinding import blinded, key_table
 from placing.rating.page import entries_of, page_of
 from placing.report import write_text
 from placing.rooms.reader import layout_reader
-from placing.table2_answers import JOINT_COLUMNS
+from placing.table2_answers import ANSWER_COLUMNS
 
 log = logging.getLogger(__name__)
 
@@ -43,7 +43,7 @@ def main(
     read = layout_reader(rooms, schema, catalogue)
     layouts = {scene: read(scene) for scene in scenes}
     objects = {scene: layout.objects for scene, layout in layouts.items()}
-    arrangements = blinded(read_table(joint, JOINT_COLUMNS), objects, seed)
+    arrangements = blinded(read_table(joint, ANSWER_COLUMNS), objects, seed)
     entries = entries_of(arrangements, layouts)
     shown = tqdm(entries, total=len(arrangements), unit="arrangement", disable=None)
     text = page_of(template.read_text(), shown)

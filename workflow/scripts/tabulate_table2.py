@@ -21,7 +21,7 @@ from placing.rooms.reader import layout_reader
 from placing.scene import Layout, Scene
 from placing.seeds import generator
 from placing.table2 import cells, table2
-from placing.table2_answers import JOINT_COLUMNS
+from placing.table2_answers import ANSWER_COLUMNS
 from placing.table2_page import table2_markdown
 from placing.table2_scores import score_scene, verdicts_of
 
@@ -68,7 +68,7 @@ def main(
         min_overlap: Share of an object's half-width that is on its area.
         ratings: Files of raters.
     """
-    answers = read_table(joint, JOINT_COLUMNS)
+    answers = read_table(joint, ANSWER_COLUMNS)
     categories = sorted({item.category for item in read_catalogue(catalogue).values()})
     places = read_correct_places(correct_places, supports, categories)
     read_layout = layout_reader(rooms, schema, catalogue)

@@ -13,7 +13,7 @@ from placing.joint_options import DENSITIES, Proposals
 
 Array = NDArray[np.float64]
 
-SINGLE = ("log_stability", "log_semantics", "log_share")
+SINGLE = ("log_stability", "log_semantics")
 """Columns whose rounding to single precision moves nothing."""
 
 

@@ -24,13 +24,14 @@ from placing.areas.scans import ScanAreas
 from placing.clouds.ply import Cloud
 from placing.figures import STYLE
 from placing.pictures.cameras import Camera, framing
+from placing.pictures.rooms import CORNERS_DEG
 from placing.scene import PlacingArea
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 
 SIZE_INCH, PIXELS = (13.0, 6.2), (1100, 1000)
-CORNERS_DEG, ELEVATION_DEG, FOV_DEG = (50.0, 130.0, 230.0, 310.0), 48.0, 32.0
+ELEVATION_DEG, FOV_DEG = 48.0, 32.0
 PALE, PAPER = 0.6, 255
 """White in the points below areas, and the colour behind them."""
 MOST_ROWS, APART, AROUND_M = 26, 0.028, 0.6

@@ -4,13 +4,13 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from placing.dressing import WALLS, meshes_of, object_meshes
+from placing.dressing import meshes_of, object_meshes
 from placing.errors import unknown
 from placing.pictures.cameras import corners_of, framing
 from placing.pictures.labels import labelled
 from placing.pictures.pages import Key, Picture, page
 from placing.pictures.renderer import render
-from placing.pictures.rooms import anchor_of, cut_away, seen_furniture
+from placing.pictures.rooms import anchor_of, seen_meshes
 from placing.scene import Arrangement, Furniture, Layout, Placement
 
 ELEVATION_DEG = 48.0
@@ -62,8 +62,7 @@ def desk_picture(
     w, _, _, z = piece.T_world_furniture[:4]
     azimuth = np.rad2deg(2 * np.arctan2(z, w)) + BEHIND_DEG
     camera = framing(seen, azimuth, ELEVATION_DEG, size, 34.0, 0.03)
-    walls = cut_away(meshes.pop(WALLS), layout.outline_m, np.array(camera.eye))
-    kept = [meshes[name] for name in seen_furniture(layout, camera)]
+    room = seen_meshes(layout, camera, meshes)
     chosen = object_meshes(layout, Arrangement("", "", tuple(placements)))
     on_desk = {
         name: mesh
@@ -72,7 +71,7 @@ def desk_picture(
         and np.all(mesh.centroid[:2] <= high[:2])
         and mesh.bounds[0, 2] > high[2] - 0.1
     }
-    drawn = render([walls, *kept, *chosen.values()], camera, size)
+    drawn = render([*room, *chosen.values()], camera, size)
     anchors = np.array([anchor_of(m) for m in on_desk.values()]).reshape(-1, 3)
     points = camera.project(anchors, size)
     return labelled(drawn, dict(zip(on_desk, points, strict=True)), 18)

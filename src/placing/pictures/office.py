@@ -6,15 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 from trimesh import Trimesh
 
-from placing.dressing import WALLS, meshes_of
 from placing.pictures.cameras import Camera, corners_of, framing
 from placing.pictures.labels import labelled
 from placing.pictures.office_content import Office
 from placing.pictures.pages import Key, page
 from placing.pictures.people import HEAT, KIND_COLOURS, body, heat
 from placing.pictures.renderer import Picture, render
-from placing.pictures.rooms import anchor_of, cut_away, room_camera, seen_furniture
-from placing.scene import Layout
+from placing.pictures.rooms import anchor_of, room_camera, seen_meshes
 
 Array = NDArray[np.float64]
 
@@ -33,7 +31,7 @@ ABOUT = {
 def draw_people(office: Office, size: tuple[int, int]) -> Picture:
     """Return Figure 4: random people, sampled people, and where an object goes."""
     camera = room_camera(office.layout, size)
-    room = [*room_meshes(office.layout, camera), *office.given.values()]
+    room = [*seen_meshes(office.layout, camera), *office.given.values()]
     wanted, n = office.figure.category, len(office.random)
     random = [body(person, FULL) for person in office.random]
     sampled = [body(person, FULL) for person in office.sampled]
@@ -61,7 +59,7 @@ def draw_people(office: Office, size: tuple[int, int]) -> Picture:
 def draw_arranged(office: Office, size: tuple[int, int]) -> Picture:
     """Return Figure 5: the empty room arranged, and the people who use it."""
     camera = room_camera(office.layout, size)
-    room = [*room_meshes(office.layout, camera), *office.placed.values()]
+    room = [*seen_meshes(office.layout, camera), *office.placed.values()]
     people = [body(person, FULL) for person in office.users]
     anchors = np.array([anchor_of(mesh) for mesh in office.placed.values()])
     near = close_up(camera, anchors, size)
@@ -95,13 +93,6 @@ def close_up(camera: Camera, points: Array, size: tuple[int, int]) -> Camera:
     elevation = np.degrees(np.arcsin(back[2] / np.linalg.norm(back)))
     corners = corners_of(points.min(axis=0) - AROUND_M, points.max(axis=0) + AROUND_M)
     return framing(corners, float(azimuth), float(elevation), size, camera.fov_deg, 0.0)
-
-
-def room_meshes(layout: Layout, camera: Camera) -> list[Trimesh]:
-    """Return walls, cut open towards the camera, and the furniture that it sees."""
-    meshes = meshes_of(layout)
-    walls = cut_away(meshes.pop(WALLS), layout.outline_m, np.array(camera.eye))
-    return [walls, *(meshes[name] for name in seen_furniture(layout, camera))]
 
 
 def with_names(

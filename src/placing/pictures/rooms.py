@@ -10,6 +10,7 @@ from manifold3d import CrossSection, JoinType, Manifold
 from numpy.typing import NDArray
 
 from placing import rigid
+from placing.dressing import WALLS, Meshes, meshes_of
 from placing.pictures.cameras import Camera, corners_of, framing
 from placing.pictures.shading import face_colours, joined
 from placing.scene import Furniture, Layout
@@ -43,6 +44,18 @@ def room_camera(
     drawn = [c for c in corners if c[2] == 0 or not _on_near(layout, near, c[:2])]
     azimuth = CORNERS_DEG[int(np.argmin(hidden))]
     return framing(np.array(drawn), azimuth, elevation_deg, size, 34.0, 0.04)
+
+
+def seen_meshes(
+    layout: Layout, camera: Camera, meshes: Meshes | None = None
+) -> list[trimesh.Trimesh]:
+    """Return walls, cut open towards the camera, and the furniture that it sees.
+
+    `meshes` of the layout may be given, so that several views share them.
+    """
+    found = meshes_of(layout) if meshes is None else meshes
+    walls = cut_away(found[WALLS], layout.outline_m, np.array(camera.eye))
+    return [walls, *(found[name] for name in seen_furniture(layout, camera))]
 
 
 def _hidden(layout: Layout, camera: Camera) -> float:

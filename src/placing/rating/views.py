@@ -9,14 +9,13 @@ from dataclasses import dataclass
 from io import BytesIO
 
 import numpy as np
-import trimesh
 from PIL import Image
 
-from placing.dressing import WALLS, Meshes, meshes_of, object_meshes
+from placing.dressing import meshes_of, object_meshes
 from placing.pictures.cameras import Camera, corners_of, framing
 from placing.pictures.labels import labelled
 from placing.pictures.renderer import Picture, render
-from placing.pictures.rooms import anchor_of, cut_away, room_camera, seen_furniture
+from placing.pictures.rooms import anchor_of, room_camera, seen_meshes
 from placing.scene import Arrangement, Layout, Placement
 
 SIZE = (1280, 960)
@@ -47,7 +46,7 @@ def views_of(layout: Layout, placements: Iterable[Placement]) -> Iterator[View]:
     objects = object_meshes(layout, Arrangement("", "", placed))
     room = meshes_of(layout)
     for title, camera in zip(TITLES, cameras_of(layout), strict=True):
-        meshes = [*seen_from(layout, room, camera), *objects.values()]
+        meshes = [*seen_meshes(layout, camera, room), *objects.values()]
         anchors = np.array([anchor_of(mesh) for mesh in objects.values()])
         pixels = camera.project(anchors.reshape(-1, 3), SIZE)
         numbers = {str(n): pixel for n, pixel in enumerate(pixels, 1)}
@@ -72,12 +71,6 @@ def cameras_of(layout: Layout) -> tuple[Camera, Camera, Camera]:
     side_deg = float(sides_deg[np.argmax(np.cos(np.radians(sides_deg - azimuth_deg)))])
     corners[:, 2] = np.minimum(corners[:, 2], SHOWN_M)
     return first, other, framing(corners, side_deg, ABOVE_DEG, SIZE, 34.0, 0.02)
-
-
-def seen_from(layout: Layout, room: Meshes, camera: Camera) -> list[trimesh.Trimesh]:
-    """Return walls and furniture without what stands between camera and room."""
-    walls = cut_away(room[WALLS], layout.outline_m, np.array(camera.eye))
-    return [walls, *(room[name] for name in seen_furniture(layout, camera))]
 
 
 def jpeg_of(picture: Picture) -> bytes:

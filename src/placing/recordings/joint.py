@@ -19,6 +19,7 @@ from placing.clouds.ply import Cloud
 from placing.errors import BadArtifact
 from placing.scene import PlacingArea, Scene, SceneObject
 from placing.shapes.objects import object_shape
+from placing.table2_answers import check_objects
 
 Array = NDArray[np.float64]
 
@@ -120,11 +121,7 @@ def joint_recording(
     """
     dataset, fold, method = names
     ids, shape = [item.object_id for item in scene.objects], density.shape
-    if sorted(joint["object"]) != sorted(ids):
-        raise BadArtifact(
-            f"joint placements of {scene.scene} by {method}: objects "
-            f"{sorted(joint['object'])}; expected each of {sorted(ids)} once"
-        )
+    check_objects(joint["object"], ids, scene.scene, method)
     if shape != (len(ids), len(candidates.location)):
         raise BadArtifact(
             f"densities of {scene.scene} by {method}: shape {shape}; expected "

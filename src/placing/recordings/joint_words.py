@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from placing.methods import JOINT_NAMES
 from placing.recordings.joint import COLDEST, Chosen, JointRecording
 from placing.scene import PlacingArea
-from placing.table2_answers import LABELS_OF
 
 ABOUT = (
     "Scenes that were written for this project and scanned in simulation. They are not "
@@ -31,7 +31,7 @@ HEADS += ("area", "height [m]", "stands on", "orientation")
 
 def label_of(method: str) -> str:
     """Return what a method is called in Table 2."""
-    return LABELS_OF.get(method, method)
+    return JOINT_NAMES.get(method, method)
 
 
 def summary(content: JointRecording) -> str:

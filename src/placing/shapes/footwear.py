@@ -1,4 +1,4 @@
-"""Shapes of pairs of shoes; a pair is one object and its toes point to +x."""
+"""Shapes of shoes; a pair is one object and toes point to +x."""
 
 from placing.shapes.solids import (
     Solid,
@@ -12,6 +12,11 @@ from placing.shapes.solids import (
 )
 
 LEFT_RIGHT = (1, -1)
+
+
+def shoe(d: float, w: float, h: float) -> Solid:
+    """Return the left one of a pair of sneakers."""
+    return _sneaker(d, w, h)
 
 
 def shoes(d: float, w: float, h: float) -> Solid:

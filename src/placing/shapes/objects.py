@@ -20,6 +20,7 @@ from placing.shapes import (
     officeware,
     screens,
     stemware,
+    sundries,
 )
 from placing.shapes.shape import Shape, Support
 from placing.shapes.solids import Solid, mesh_of
@@ -41,6 +42,7 @@ OBJECTS: dict[str, Callable[[float, float, float], Solid]] = {
     "figurine": household.figurine,
     "fruit_bowl": food.fruit_bowl,
     "frying_pan": dishes.frying_pan,
+    "hand_torch": sundries.hand_torch,
     "keyboard": keyboards.keyboard,
     "knife_block": kitchenware.knife_block,
     "ladle": kitchenware.ladle,
@@ -58,11 +60,13 @@ OBJECTS: dict[str, Callable[[float, float, float], Solid]] = {
     "plate": dishes.plate,
     "remote": handsets.remote,
     "saucepan": dishes.saucepan,
+    "shoe": footwear.shoe,
     "shoes": footwear.shoes,
     "soda_can": food.soda_can,
     "spatula": kitchenware.spatula,
     "spray_bottle": household.spray_bottle,
     "table_lamp": officeware.table_lamp,
+    "tissue_box": sundries.tissue_box,
     "trash_bin": household.trash_bin,
     "tv": screens.tv,
     "vase": household.vase,
