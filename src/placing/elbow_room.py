@@ -32,7 +32,8 @@ def has_room(
     """Return which boxes (o, 7) on areas (o,) have room, shape (o,).
 
     No point lies within `room_m` beside a box, from `lift_m` above its bottom to its
-    top; on the floor its footprint is where the floor was seen.
+    top, or `room_m` further where it is flat; on the floor its footprint is where the
+    floor was seen.
     """
     free = ~_is_cut(*points.plan, points.start, points.points, boxes, room_m, lift_m)
     for k, of in enumerate(areas):
@@ -52,7 +53,8 @@ def _is_cut(x_m, y_m, cell_m, per_m, n_x, n_y, start, points, boxes, room_m, lif
         cos, sin = np.cos(boxes[o, 6]), np.sin(boxes[o, 6])
         half_x, half_y = boxes[o, 3] / 2 + room_m, boxes[o, 4] / 2 + room_m
         bottom = boxes[o, 2] - boxes[o, 5] / 2 + lift_m
-        top = boxes[o, 2] + boxes[o, 5] / 2
+        # What is flatter than its lift has walls beside it all the same.
+        top = max(boxes[o, 2] + boxes[o, 5] / 2, bottom + room_m)
         wide_x = abs(cos) * half_x + abs(sin) * half_y
         wide_y = abs(sin) * half_x + abs(cos) * half_y
         first_i = max(int((boxes[o, 0] - wide_x - x_m) * per_m), 0)

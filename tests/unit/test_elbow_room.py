@@ -28,7 +28,8 @@ def naive(points, box, room_m, lift_m):
         a = np.array([[cos, sin], [-sin, cos]])
         along = a @ (np.array([x, y]) - box[:2])
         beside = np.abs(along) < box[3:5] / 2 + room_m
-        if beside.all() and lift_m < z - (box[2] - box[5] / 2) < box[5]:
+        top = max(box[5], lift_m + room_m)
+        if beside.all() and lift_m < z - (box[2] - box[5] / 2) < top:
             return False
     return True
 
@@ -51,6 +52,15 @@ def test_room_is_that_of_a_loop_over_points(room_m):
     truth = [naive(points.astype(float), box, room_m, 0.02) for box in boxes]
     assert found.tolist() == truth
     assert 20 < found.sum() < 180
+
+
+def test_a_plate_flatter_than_its_lift_keeps_off_a_wall():
+    box = np.array([[1.0, 1.0, 0.01, 0.3, 0.3, 0.02, 0.0]])
+    wall = [[1.17, 1.0, z] for z in (0.0, 0.04, 0.08)]
+    args = np.zeros(1, int), 0.03, 0.03
+    for points, is_free in ((wall, False), (wall[:1], True)):
+        field = PlacingField(cloud(points), 0.01)
+        assert has_room(field.points, (area(False),), box, *args)[0] == is_free
 
 
 def test_on_the_floor_all_of_it_is_on_what_was_seen():

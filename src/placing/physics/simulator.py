@@ -124,8 +124,20 @@ def wavefront(pieces: tuple[Piece, ...]) -> str:
 
 
 def deepest_overlap(world: World, i: int) -> tuple[float, str]:
-    """Return the deepest overlap of a body and the name of what it overlaps with."""
-    depths = [(-contact[8], contact[2]) for contact in contacts_of(world, i)]
+    """Return the deepest overlap of a body and the name of what it overlaps with.
+
+    It is looked for anew: the contacts that a step leaves behind follow a body that is
+    put elsewhere and are millimetres wrong there.
+    """
+    box = pybullet.getAABB(i, physicsClientId=world.client)
+    near = pybullet.getOverlappingObjects(*box, physicsClientId=world.client) or ()
+    depths = [
+        (-point[8], other)
+        for other in sorted({body for body, _ in near} - {i})
+        for point in pybullet.getClosestPoints(
+            i, other, 0.0, physicsClientId=world.client
+        )
+    ]
     depth, other = max(depths, default=(0.0, -1))
     return (depth, world.names[other]) if depth > 0 else (0.0, "")
 
