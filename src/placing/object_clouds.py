@@ -26,6 +26,20 @@ MAX_GAP = 0.1
 """Largest sum of outward areas of a closed surface, as a share of its area."""
 
 
+@dataclass(frozen=True)
+class LookingConfig:
+    """How closely objects and what is around them are looked at.
+
+    What is learned and what it is applied to must agree; the values live in
+    `config/config.yaml`.
+    """
+
+    object_spacing_m: float
+    """Mean distance of the points of an object's cloud."""
+    cell_m: float
+    """Cells of the floor plan in which a cloud is looked up."""
+
+
 @dataclass(frozen=True, eq=False)
 class ObjectCloud:
     """Points of an object's surface in its frame; each cloud equals only itself."""

@@ -22,7 +22,7 @@ from placing.contacts import (
     stability_features,
 )
 from placing.errors import BadArtifact
-from placing.object_clouds import ObjectCloud, object_cloud
+from placing.object_clouds import LookingConfig, ObjectCloud, object_cloud
 from placing.object_descriptors import describe_object, sample_object
 from placing.orientations import Orientation, OrientationsConfig, orientations
 from placing.scene import Scene, SceneObject
@@ -41,10 +41,6 @@ UPRIGHT = 0
 class PsiObjectConfig:
     """Settings of the object context; the values live in `config/config.yaml`."""
 
-    object_spacing_m: float
-    """Distance of the points of an object's cloud."""
-    cell_m: float
-    """Cells in which the cloud of the scene is looked up."""
     probe_m: float
     """Edge of the squares whose places share one look for the density."""
     min_upright: float
@@ -81,11 +77,11 @@ class PsiObject:
         cloud: Cloud,
         candidates: Candidates,
         models: tuple[StabilityModel, SemanticsModel],
-        config: tuple[PsiObjectConfig, OrientationsConfig],
+        config: tuple[PsiObjectConfig, LookingConfig, OrientationsConfig],
     ) -> None:
         """Look at the cloud once for all objects."""
         self.scene, self.candidates = scene, candidates
-        self.config, self._orienting = config
+        self.config, self.looking, self._orienting = config
         self._stability, self._semantics = models
         if self._stability.features != STABILITY_FEATURES:
             names = ", ".join(self._stability.features)
@@ -93,7 +89,7 @@ class PsiObject:
                 f"model of stability: features: {names}; expected those of this"
                 " version: learn it again"
             )
-        self.field = PlacingField(cloud, self.config.cell_m)
+        self.field = PlacingField(cloud, self.looking.cell_m)
         self._areas = describe_areas(cloud, scene.areas, candidates)
         self._clouds: dict[str, ObjectCloud] = {}
         self._ways: dict[str, tuple[Orientation, ...]] = {}
@@ -109,7 +105,7 @@ class PsiObject:
     def cloud(self, item: SceneObject) -> ObjectCloud:
         """Return the cloud of an object."""
         if item.object_id not in self._clouds:
-            spacing = self.config.object_spacing_m
+            spacing = self.looking.object_spacing_m
             self._clouds[item.object_id] = object_cloud(item, spacing)
         return self._clouds[item.object_id]
 
@@ -118,7 +114,7 @@ class PsiObject:
         if not self.scene.areas:
             return np.empty(0)
         if item.object_id not in self._belongs:
-            shown = sample_object(item, self.config.object_spacing_m)
+            shown = sample_object(item, self.looking.object_spacing_m)
             args = describe_object(item, shown), self._areas
             found = log_psi_semantics(self._semantics, *args)
             self._belongs[item.object_id] = found
@@ -170,10 +166,10 @@ class PsiObject:
 
     def log_stack(self, upper: SceneObject, lower: SceneObject) -> float:
         """Return log Psi_stability of an object upright on the middle of another."""
-        shown = sample_object(lower, self.config.object_spacing_m)
+        shown = sample_object(lower, self.looking.object_spacing_m)
         top = np.array([lower.size_m[2] / 2])
         upright, middle = np.array([rigid.IDENTITY]), np.zeros((1, 2))
-        field = PlacingField(shown, self.config.cell_m)
+        field = PlacingField(shown, self.looking.cell_m)
         cloud = self.cloud(upper)
         height = rest_heights(field, cloud, upright, middle, top)
         T = np.column_stack([upright, middle, height])

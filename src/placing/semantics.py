@@ -30,8 +30,6 @@ Array = NDArray[np.float64]
 class SemanticsConfig:
     """How semantics are learned; the values live in `config/config.yaml`."""
 
-    object_spacing_m: float
-    """Distance of the points that show the shape of an object."""
     n_landmarks: int
     """Pairs of object and area that every pair is compared with."""
     widths: tuple[float, ...]

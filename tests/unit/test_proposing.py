@@ -13,6 +13,7 @@ from placing.contacts import STABILITY_FEATURES
 from placing.errors import BadArtifact
 from placing.joint_options import DENSITIES, ProposalConfig
 from placing.learned import Choices
+from placing.object_clouds import LookingConfig
 from placing.object_descriptors import OBJECT_DESCRIPTORS
 from placing.orientations import OrientationsConfig
 from placing.proposing import propose_for
@@ -22,7 +23,8 @@ from placing.semantics import SemanticsModel
 from placing.stability import LEAF, StabilityModel
 
 ORIENTATIONS = OrientationsConfig(6, 3, 10.0, 5.0, (15.0,), 0.4, 0.03)
-CONFIG = PsiObjectConfig(0.01, 0.01, 0.1, 0.5, 0.936)
+LOOKING = LookingConfig(0.01, 0.01)
+CONFIG = PsiObjectConfig(0.1, 0.5, 0.936)
 
 
 def stump(feature, threshold):
@@ -54,7 +56,7 @@ def psi(model):
     scene, cloud = study_scene()
     models = stump("margin_m", 0.01), tables_only()
     args = scene, cloud, model.candidates, models
-    return PsiObject(*args, (CONFIG, ORIENTATIONS))
+    return PsiObject(*args, (CONFIG, LOOKING, ORIENTATIONS))
 
 
 @pytest.fixture(scope="module")

@@ -26,7 +26,7 @@ from placing.semantics import (
     unaware,
 )
 
-CONFIG = SemanticsConfig(0.01, 80, (1.0,), (10.0, 100.0), 2)
+CONFIG = SemanticsConfig(80, (1.0,), (10.0, 100.0), 2)
 DRINKS = (
     SceneObject("bottle1", "food", "bottle", (0.075, 0.075, 0.3), 0.9, False, True),
     SceneObject("can1", "food", "soda_can", (0.066, 0.066, 0.122), 0.36, False, True),

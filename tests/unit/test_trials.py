@@ -11,6 +11,7 @@ import yaml
 
 from placing import rigid
 from placing.clouds.cloud import CloudConfig
+from placing.object_clouds import LookingConfig
 from placing.orientations import OrientationsConfig
 from placing.physics.arrangements import bodies_of, unrest
 from placing.physics.choosing import features_of, settle_chosen
@@ -32,6 +33,7 @@ from placing.rooms.catalogue import read_catalogue
 
 FOLDER = Path(__file__).parents[2] / "config"
 STUDY = yaml.safe_load((FOLDER / "config.yaml").read_text())
+LOOKING = LookingConfig(**STUDY["looking"])
 TRIALS = replace(TrialsConfig(**STUDY["trials"]), n_trials=24)
 WAYS = OrientationsConfig(**STUDY["orientations"])
 SETTLING = SettleConfig(**STUDY["settling"])
@@ -43,7 +45,7 @@ BOOK_M = (0.24, 0.17, 0.03)
 @cache
 def grounds():
     cloud = CloudConfig(**STUDY["cloud"])
-    return grounds_of(5, TRIALS.noise_m, TRIALS.cell_m, cloud, 0.02, ["table"])
+    return grounds_of(5, TRIALS.noise_m, LOOKING.cell_m, cloud, 0.02, ["table"])
 
 
 @cache

@@ -39,7 +39,7 @@ rule propose_placements:
         code=digest("propose_placements"),
         seed=config["seed"],
         settings=flags(*ANSWERING, within="settings."),
-        proposing=flags("orientations", "psi_object", "proposing"),
+        proposing=flags("orientations", "looking", "psi_object", "proposing"),
     shell:
         r"""
         python workflow/scripts/propose_placements.py \

@@ -28,7 +28,7 @@ rule learn_semantics:
     params:
         code=digest("learn_semantics"),
         seed=config["seed"],
-        settings=flags("semantics"),
+        settings=flags("looking", "semantics"),
     shell:
         r"""
         python workflow/scripts/learn_semantics.py \
@@ -60,7 +60,7 @@ rule tabulate_semantics:
         "results/benchmarks/tabulate_semantics/{dataset}.tsv"
     params:
         code=digest("tabulate_semantics"),
-        settings=flags("semantics", "baselines"),
+        settings=flags("looking", "semantics", "baselines"),
     shell:
         r"""
         python workflow/scripts/tabulate_semantics.py \

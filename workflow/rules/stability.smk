@@ -29,7 +29,7 @@ rule run_trials:
         seed=config["seed"],
         spacing_m=config["scan"]["spacing_m"],
         reach_m=config["putting_down"]["reach_m"],
-        settings=flags("cloud", "orientations", "trials", "settling"),
+        settings=flags("cloud", "orientations", "looking", "trials", "settling"),
     shell:
         r"""
         python workflow/scripts/run_trials.py \
@@ -63,7 +63,9 @@ rule learn_stability:
         seed=config["seed"],
         spacing_m=config["scan"]["spacing_m"],
         reach_m=config["putting_down"]["reach_m"],
-        settings=flags("cloud", "orientations", "trials", "settling", "stability"),
+        settings=flags(
+            *("cloud", "orientations", "looking", "trials", "settling", "stability")
+        ),
     shell:
         r"""
         python workflow/scripts/learn_stability.py \

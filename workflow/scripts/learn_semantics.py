@@ -11,6 +11,7 @@ from placing.artifacts.scenes import read_scene
 from placing.artifacts.semantics import write_semantics
 from placing.clouds.ply import read_ply
 from placing.labelled_areas import label_scene
+from placing.object_clouds import LookingConfig
 from placing.seeds import generator
 from placing.semantics import LabelledScene, SemanticsConfig, learn_semantics
 
@@ -25,6 +26,7 @@ def main(
     clouds: tuple[Path, ...],
     model: Path,
     seed: int,
+    looking: LookingConfig,
     semantics: SemanticsConfig,
 ) -> None:
     """Learn on which placing areas objects belong from the folds not held out.
@@ -37,6 +39,7 @@ def main(
         clouds: Directories of their clouds, in the same order.
         model: JSON to write.
         seed: Root of all random streams.
+        looking: How closely objects and scenes are looked at.
         semantics: How semantics are learned.
     """
     folders = zip(scenes, features, clouds, strict=True)
@@ -46,7 +49,7 @@ def main(
         for path in sorted(of_scenes.glob("*.json"))
     ]
     labelled = [
-        read_labelled(*files, semantics.object_spacing_m)
+        read_labelled(*files, looking.object_spacing_m)
         for files in tqdm(paths, unit="scene", disable=None)
     ]
     rng = generator(seed, "learn_semantics", dataset, held_out)

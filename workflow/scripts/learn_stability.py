@@ -16,6 +16,7 @@ from placing.artifacts.formats import read_table, write_csv, write_table
 from placing.artifacts.stability import write_stability
 from placing.clouds.cloud import CloudConfig
 from placing.contacts import STABILITY_FEATURES
+from placing.object_clouds import LookingConfig
 from placing.orientations import OrientationsConfig
 from placing.physics.arrangements import bodies_of
 from placing.physics.choosing import choose, features_of, settle_chosen
@@ -56,6 +57,7 @@ def main(
     n_workers: int,
     cloud: CloudConfig,
     orientations: OrientationsConfig,
+    looking: LookingConfig,
     trials: TrialsConfig,
     settling: SettleConfig,
     stability: StabilityConfig,
@@ -75,12 +77,15 @@ def main(
         n_workers: Processes that simulate; results do not depend on it.
         cloud: Preprocessing of the scans.
         orientations: How objects are turned.
+        looking: How closely objects and scenes are looked at.
         trials: What was tried.
         settling: What counts as staying put.
         stability: How stability is learned.
     """
-    things = things_of(read_catalogue(catalogue), trials.object_spacing_m, orientations)
-    grounds = grounds_of(seed, trials.noise_m, trials.cell_m, cloud, spacing_m)
+    things = things_of(
+        read_catalogue(catalogue), looking.object_spacing_m, orientations
+    )
+    grounds = grounds_of(seed, trials.noise_m, looking.cell_m, cloud, spacing_m)
     tried = read_table(trials_file, TRIAL_COLUMNS)
     features, names = features_of(tried, grounds, things), STABILITY_FEATURES
     fold_of = folds_of(things, stability.n_folds)

@@ -18,6 +18,7 @@ from placing.clouds.ply import read_ply
 from placing.joint_options import ProposalConfig
 from placing.joint_tuning import most_frequent
 from placing.learned import Choices
+from placing.object_clouds import LookingConfig
 from placing.orientations import OrientationsConfig
 from placing.proposing import propose_for
 from placing.psi_object import PsiObject, PsiObjectConfig
@@ -40,6 +41,7 @@ def main(
     seed: int,
     settings: Settings,
     orientations: OrientationsConfig,
+    looking: LookingConfig,
     psi_object: PsiObjectConfig,
     proposing: ProposalConfig,
 ) -> None:
@@ -58,6 +60,7 @@ def main(
         seed: Root of all random streams.
         settings: Sections of the configuration that answering looks at.
         orientations: Which orientations are tried.
+        looking: How closely objects and scenes are looked at.
         psi_object: How the object context looks at a scene.
         proposing: How many placements are proposed.
     """
@@ -70,7 +73,7 @@ def main(
         cloud = read_ply(clouds / f"{scene.scene}.ply")
         candidates, poses = read_features(features / f"{scene.scene}.npz")
         model = SceneModel(scene, candidates, poses, learned, settings)
-        config = psi_object, orientations
+        config = psi_object, looking, orientations
         psi = PsiObject(scene, cloud, candidates, models, config)
         names = (dataset, scene.scene)
         stream = partial(generator, seed, "propose_placements", *names)

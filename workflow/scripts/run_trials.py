@@ -8,6 +8,7 @@ from tqdm import tqdm
 from command import run
 from placing.artifacts.formats import write_table
 from placing.clouds.cloud import CloudConfig
+from placing.object_clouds import LookingConfig
 from placing.orientations import OrientationsConfig
 from placing.physics.arrangements import bodies_of
 from placing.physics.grounds import grounds_of, pieces_of_fixtures
@@ -29,6 +30,7 @@ def main(
     n_workers: int,
     cloud: CloudConfig,
     orientations: OrientationsConfig,
+    looking: LookingConfig,
     trials: TrialsConfig,
     settling: SettleConfig,
 ) -> None:
@@ -43,11 +45,14 @@ def main(
         n_workers: Processes that simulate; results do not depend on it.
         cloud: Preprocessing of the scans.
         orientations: How objects are turned.
+        looking: How closely objects and scenes are looked at.
         trials: What is tried.
         settling: What counts as staying put.
     """
-    things = things_of(read_catalogue(catalogue), trials.object_spacing_m, orientations)
-    grounds = grounds_of(seed, trials.noise_m, trials.cell_m, cloud, spacing_m)
+    things = things_of(
+        read_catalogue(catalogue), looking.object_spacing_m, orientations
+    )
+    grounds = grounds_of(seed, trials.noise_m, looking.cell_m, cloud, spacing_m)
     table = draw_trials(seed, grounds, things, trials)
     bodies = bodies_of([t.item for t in things.values()], settling.margin_m)
     fixed = pieces_of_fixtures(grounds, settling.margin_m)

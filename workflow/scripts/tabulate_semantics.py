@@ -15,6 +15,7 @@ from placing.artifacts.theta import read_histograms
 from placing.baselines import BaselinesConfig
 from placing.clouds.ply import read_ply
 from placing.labelled_areas import label_scene
+from placing.object_clouds import LookingConfig
 from placing.semantics import SemanticsConfig, log_odds
 from placing.semantics_table import height_shares, hit_rows, tabulate_semantics
 
@@ -28,6 +29,7 @@ def main(
     features: tuple[Path, ...],
     clouds: tuple[Path, ...],
     table: Path,
+    looking: LookingConfig,
     semantics: SemanticsConfig,
     baselines: BaselinesConfig,
 ) -> None:
@@ -40,6 +42,7 @@ def main(
         features: Directories of their features, in the same order.
         clouds: Directories of their clouds, in the same order.
         table: Table to write, a line for each category and method.
+        looking: How closely objects and scenes are looked at.
         semantics: How objects were described.
         baselines: Bins of the histograms of heights.
     """
@@ -49,7 +52,7 @@ def main(
         of_semantics, of_theta, of_scenes, of_features, of_clouds = fold
         model = read_semantics(of_semantics)
         histograms = read_histograms(of_theta / "height.json")
-        spacing_m = semantics.object_spacing_m
+        spacing_m = looking.object_spacing_m
         for path in sorted(of_scenes.glob("*.json")):
             scene = read_scene(path)
             candidates, _ = read_features(of_features / f"{scene.scene}.npz")

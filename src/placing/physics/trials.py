@@ -53,10 +53,6 @@ class TrialsConfig:
     """What is tried; the values live in `config/config.yaml`."""
 
     n_trials: int
-    object_spacing_m: float
-    """Mean distance of the points of an object's cloud."""
-    cell_m: float
-    """Cells of the floor plan in which a cloud is looked up."""
     noise_m: float
     """Noise of the points of a fixture as a depth camera sees it."""
     noisy_share: float
