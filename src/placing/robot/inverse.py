@@ -1,0 +1,128 @@
+"""Joints of the arm that bring the tool to a pose, and along a line of poses.
+
+The closed form of `pr2_arm` is used for robots whose file says so, the numerical
+inverse of `numerical` for all others; both try a fixed number of times, in order.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from placing import rigid
+from placing.robot import numerical, pr2_arm
+from placing.robot.model import RobotModel
+
+Array = NDArray[np.float64]
+
+MOST_SOLUTIONS = 6000
+"""Solutions of many poses together; what is left out then has hundreds beside it."""
+FINER = 4
+"""Times more pans are tried when none of the first has a solution."""
+PAN_STEPS_RAD = np.array(sorted(np.linspace(-0.3, 0.3, 61).tolist(), key=abs))
+"""Changes of the pan between two steps of a line, the smallest first."""
+
+
+def arm_solutions(
+    model: RobotModel, T_base_tool: Array, torso_m: float, n_tries: int | None = None
+) -> Array:
+    """Return all solutions found within the limits, (k, a) [rad].
+
+    The base is the frame on the floor. A joint without limits is between -pi and pi.
+    """
+    T_torso_wrist = _wrist(model, T_base_tool, torso_m)
+    n = model.settings.n_tries if n_tries is None else n_tries
+    if model.arm is None:
+        return numerical.solutions(model, T_torso_wrist, n)
+    found = _solve(model.arm, T_torso_wrist, _pans(model.arm, n))
+    if len(found) == 0:
+        found = _solve(model.arm, T_torso_wrist, _pans(model.arm, FINER * n))
+    return found
+
+
+def solutions_at(
+    model: RobotModel, Ts_base_tool: Array, torso_m: Array
+) -> tuple[NDArray[np.int64], Array]:
+    """Return the solutions at many poses (n, 4, 4) and heights of the torso (n,).
+
+    They are whose each solution is (k,), and the solutions (k, a) as `arm_solutions`
+    returns them, without its second, finer try.
+    """
+    tree, n = model.tree, model.settings.n_tries
+    lift, tool = np.tile(np.eye(4), (len(torso_m), 1, 1)), np.eye(4)
+    lift[:, :3] = tree.T_parent_joint[1]
+    up = tree.T_parent_joint[1][:, :3] @ tree.axis[1]
+    lift[:, :3, 3] += np.asarray(torso_m)[:, None] * up
+    tool[:3] = tree.T_frame_tool
+    Ts = (np.linalg.inv(lift) @ Ts_base_tool @ np.linalg.inv(tool))[:, :3]
+    if model.arm is None:
+        found = [numerical.solutions(model, T, n) for T in Ts]
+        which = np.repeat(np.arange(len(found)), [len(arms) for arms in found])
+        return which, np.vstack([np.empty((0, model.n_arm)), *found])
+    out = np.empty((MOST_SOLUTIONS, 7))
+    which = np.empty(len(out), np.int64)
+    k = pr2_arm.solve_many(
+        model.arm, np.ascontiguousarray(Ts), _pans(model.arm, n), out, which
+    )
+    return which[:k].copy(), out[:k].copy()
+
+
+def follow(model: RobotModel, q: Array, Ts_world_tool: Array) -> Array | None:
+    """Return configurations with the tool at each pose, base and torso as in `q`.
+
+    Each is the solution nearest to the one before, (t, 4 + a); nothing is returned if
+    one pose has none, or a joint would turn more than `max_step_rad` between two.
+    """
+    path = follow_far(model, q, Ts_world_tool)
+    return path if len(path) == len(Ts_world_tool) else None
+
+
+def follow_far(model: RobotModel, q: Array, Ts_world_tool: Array) -> Array:
+    """Return as `follow` the configurations of as many poses as can be followed."""
+    T_world_base = rigid.homogeneous(rigid.from_yaw(q[2], (q[0], q[1], 0.0)))
+    Ts = np.array([rigid.homogeneous(T) for T in Ts_world_tool])
+    lift, tool = _lift_and_tool(model, q[3])
+    Ts = (np.linalg.inv(T_world_base @ lift) @ Ts @ np.linalg.inv(tool))[:, :3]
+    arms = np.empty((len(Ts), model.n_arm))
+    n = _follow(model, np.ascontiguousarray(Ts), np.asarray(q[4:], float), arms)
+    return np.hstack([np.tile(np.asarray(q[:4], float), (n, 1)), arms[:n]])
+
+
+def _follow(model: RobotModel, Ts: Array, arm: Array, out: Array) -> int:
+    """Write arms along poses of the last frame (t, 3, 4) and return how many."""
+    most = model.settings.max_step_rad
+    if model.arm is not None:
+        return pr2_arm.follow_line(model.arm, Ts, arm, PAN_STEPS_RAD, most, out)
+    for i, T_torso_wrist in enumerate(Ts):
+        found = numerical.solutions_near(model, T_torso_wrist, arm)
+        steps = np.max(np.abs(found - arm), axis=1, initial=0)
+        if len(found) == 0 or steps.min() > most:
+            return i
+        arm = out[i] = found[np.argmin(steps)]
+    return len(Ts)
+
+
+def _lift_and_tool(model: RobotModel, torso_m: float) -> tuple[Array, Array]:
+    """Return the torso's frame in the base's, and the tool in the last, (4, 4) each."""
+    tree = model.tree
+    lift, tool = np.eye(4), np.eye(4)
+    lift[:3] = tree.T_parent_joint[1]
+    lift[:3, 3] += lift[:3, :3] @ tree.axis[1] * torso_m
+    tool[:3] = tree.T_frame_tool
+    return lift, tool
+
+
+def _wrist(model: RobotModel, T_base_tool: Array, torso_m: float) -> Array:
+    """Return the last frame of the arm in the frame of the torso, (3, 4)."""
+    lift, tool = _lift_and_tool(model, torso_m)
+    T_base_wrist = rigid.homogeneous(T_base_tool) @ np.linalg.inv(tool)
+    return (np.linalg.inv(lift) @ T_base_wrist)[:3]
+
+
+def _pans(arm: pr2_arm.Pr2Arm, n: int) -> Array:
+    """Return n pans at equal steps within the limits, (n,)."""
+    return arm.lower[0] + (np.arange(n) + 0.5) / n * (arm.upper[0] - arm.lower[0])
+
+
+def _solve(arm: pr2_arm.Pr2Arm, T_torso_wrist: Array, pans: Array) -> Array:
+    """Return the solutions of all pans, (k, 7)."""
+    out = np.empty((len(pans) * pr2_arm.N_MOST, 7))
+    return out[: pr2_arm.solve(arm, T_torso_wrist, pans, out)]

@@ -1,0 +1,553 @@
+"""Compiled kinematics of the robot: where its frames and spheres are.
+
+Only joints of a configuration move: the base, the torso and the a joints of the arm
+carry f = 2 + a frames, and every link, finger and sphere is fixed in one of them.
+Letters for shapes: f frames, s spheres, g groups, l links, a joints of the arm. A frame
+is (3, 4), the upper rows of a homogeneous matrix.
+"""
+
+# ruff: noqa: ANN001, ANN201, ANN202 (the compiler infers types from the arguments)
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Tree(NamedTuple):
+    """The moving frames of a robot: 0 base, 1 torso, then one per joint of the arm."""
+
+    T_parent_joint: Array
+    """Frame of the joint of frame i in frame i - 1 at value 0, (f, 3, 4)."""
+    axis: Array
+    """Unit axis of the joint in its own frame, (f, 3)."""
+    is_turning: NDArray[np.bool_]
+    """Whether the joint turns (or slides), (f,)."""
+    link_frame: NDArray[np.int64]
+    """Which frame carries each link, (l,)."""
+    T_frame_link: Array
+    """(l, 3, 4)."""
+    T_frame_tool: Array
+    """The tool in the last frame, (3, 4)."""
+
+
+class Spheres(NamedTuple):
+    """Spheres that together contain every collision shape, tip of the arm first."""
+
+    centre_m: Array
+    """In the frame of the sphere's link, (s, 3)."""
+    radius_m: Array
+    """(s,)."""
+    link: NDArray[np.int64]
+    """Number of the link, (s,)."""
+    frame: NDArray[np.int64]
+    """Number of the moving frame that carries the link, (s,)."""
+    at_m: Array
+    """Centre in that moving frame, (s, 3)."""
+
+
+class Groups(NamedTuple):
+    """One sphere around all spheres of a link: what it clears, they clear."""
+
+    first: NDArray[np.int64]
+    """Spheres of group g are `first[g]` to `first[g + 1]`, (g + 1,)."""
+    link: NDArray[np.int64]
+    """(g,)."""
+    frame: NDArray[np.int64]
+    """(g,)."""
+    at_m: Array
+    """Centre in the moving frame, (g, 3)."""
+    radius_m: Array
+    """(g,)."""
+
+
+@njit(cache=True)
+def forward(tree: Tree, q: Array, out: Array) -> None:
+    """Write the frames of configuration `q` (4 + a,) into `out` (f, 3, 4)."""
+    c, s = np.cos(q[2]), np.sin(q[2])
+    base = out[0]
+    base[:] = 0.0
+    base[0, 0], base[0, 1], base[1, 0], base[1, 1], base[2, 2] = c, -s, s, c, 1.0
+    base[0, 3], base[1, 3] = q[0], q[1]
+    for i in range(1, len(out)):
+        _hang(out[i - 1], tree.T_parent_joint[i], out[i])
+        if tree.is_turning[i]:
+            _turn(out[i], tree.axis[i], q[i + 2])
+        else:
+            _slide(out[i], tree.axis[i], q[i + 2])
+
+
+@njit(cache=True)
+def sphere_centres(tree: Tree, spheres: Spheres, q: Array, out: Array) -> None:
+    """Write the centres of all spheres in the world [m] into `out` (s, 3)."""
+    frames = np.empty((len(tree.axis), 3, 4))
+    forward(tree, q, frames)
+    place(frames, spheres.frame, spheres.at_m, out)
+
+
+@njit(cache=True)
+def place(frames: Array, frame: NDArray[np.int64], at_m: Array, out: Array) -> None:
+    """Write points (s, 3) fixed in their frames [m], in the world, into `out`."""
+    for i in range(len(at_m)):
+        T, x, y, z = frames[frame[i]], at_m[i, 0], at_m[i, 1], at_m[i, 2]
+        for r in range(3):
+            out[i, r] = T[r, 0] * x + T[r, 1] * y + T[r, 2] * z + T[r, 3]
+
+
+@njit(cache=True)
+def _hang(T_a_b: Array, T_b_c: Array, out: Array) -> None:
+    """Write `T_a_c` into `out`, all (3, 4)."""
+    for r in range(3):
+        x, y, z = T_a_b[r, 0], T_a_b[r, 1], T_a_b[r, 2]
+        for k in range(4):
+            out[r, k] = x * T_b_c[0, k] + y * T_b_c[1, k] + z * T_b_c[2, k]
+        out[r, 3] += T_a_b[r, 3]
+
+
+@njit(cache=True)
+def _turn(T: Array, axis: Array, angle: float) -> None:
+    """Turn the frame about its own axis by Rodrigues' formula [rad]."""
+    c, s = np.cos(angle), np.sin(angle)
+    x, y, z = axis[0], axis[1], axis[2]
+    v = 1.0 - c
+    for r in range(3):
+        i, j, k = T[r, 0], T[r, 1], T[r, 2]
+        T[r, 0] = (
+            i * (c + x * x * v) + j * (y * x * v + z * s) + k * (z * x * v - y * s)
+        )
+        T[r, 1] = (
+            i * (x * y * v - z * s) + j * (c + y * y * v) + k * (z * y * v + x * s)
+        )
+        T[r, 2] = (
+            i * (x * z * v + y * s) + j * (y * z * v - x * s) + k * (c + z * z * v)
+        )
+
+
+@njit(cache=True)
+def _slide(T: Array, axis: Array, distance_m: float) -> None:
+    """Move the frame along its own axis."""
+    for r in range(3):
+        step = T[r, 0] * axis[0] + T[r, 1] * axis[1] + T[r, 2] * axis[2]
+        T[r, 3] += distance_m * step
+
+
+# Checking: whether the spheres of a configuration are clear of scene, boxes and robot.
+# Letters for shapes: l links that have spheres, c clusters of them, m pairs of links.
+
+
+class Body(NamedTuple):
+    """Spheres sorted by link and cluster; what is held is a further, last link."""
+
+    at_m: Array
+    """Centres in the frames that carry them, (s, 3)."""
+    radius_m: Array
+    """(s,)."""
+    reach_m: Array
+    """Least distance of a centre to the points of the cloud, (s,)."""
+    cluster: NDArray[np.int64]
+    """First sphere of each cluster, and the end of the last, (c + 1,)."""
+    cluster_ball: Array
+    """Centre, radius and reach of a ball around each cluster, (c, 5)."""
+    link: NDArray[np.int64]
+    """First cluster of each link, and the end of the last, (l + 1,)."""
+    link_ball: Array
+    """Centre, radius and reach of a ball around each link, (l, 5)."""
+    frame: NDArray[np.int64]
+    """Number of the frame that carries each link, (l,)."""
+    is_gripper: NDArray[np.bool_]
+    """Whether the link is part of the gripper or held by it, (l,)."""
+    n_robot: int
+    """Number of links of the robot; one more link is what is held."""
+    pairs: NDArray[np.int64]
+    """Links that may hit each other, (m, 2)."""
+    lever_m: Array
+    """Farthest that a unit of each coordinate moves a centre, (4 + a,)."""
+    span_m: float
+    """No sphere reaches farther from the axis of the base."""
+
+
+class Surroundings(NamedTuple):
+    """What a robot may hit, and how near it may come."""
+
+    origin_m: Array
+    cell_m: float
+    distance_m: NDArray[np.float32]
+    ground_m: NDArray[np.float32]
+    """As of a distance field."""
+    floor_m: float
+    """No ground is higher."""
+    boxes: Array
+    """Centre, half size, cosine and sine of the yaw, half diagonal of each, (b, 9)."""
+    margin_m: float
+    """Kept above the ground."""
+    box_margin_m: float
+    self_margin_m: float
+    lift_m: float
+    """Height of the part of what is held that may touch when putting down."""
+
+
+@njit(cache=True)
+def are_free(tree, body, around, configurations, touching, out):
+    """Write whether each configuration (t, 4 + a) is free into `out` (t,)."""
+    frames = np.empty((len(tree.axis), 3, 4))
+    centres = np.empty((len(body.frame), 3))
+    known = -1  # a row whose base and torso are free, which hold what does not move
+    for i in range(len(configurations)):
+        first = 2 if known >= 0 else 0
+        for j in range(4):
+            if known >= 0 and configurations[i, j] != configurations[known, j]:
+                first = 0
+        forward(tree, configurations[i], frames)
+        _place_links(body, frames, centres)
+        out[i] = not is_hit(body, around, frames, centres, touching, first)
+        if out[i]:
+            known = i
+
+
+@njit(cache=True)
+def edge_free(tree, body, around, q0, q1, touching, step_m):
+    """Return whether a straight line of configurations is free, and the checks made."""
+    frames = np.empty((len(tree.axis), 3, 4))
+    centres = np.empty((len(body.frame), 3))
+    way, moved = 0.0, len(tree.axis)
+    for i in range(len(q0) - 1, -1, -1):
+        if q0[i] != q1[i]:
+            way += abs(q1[i] - q0[i]) * body.lever_m[i]
+            moved = max(i - 2, 0)
+    n = max(1, int(np.ceil(way / step_m)))
+    stride, checks = 1, 0
+    while stride < n:
+        stride *= 2
+    q = np.empty(len(q0))
+    first = 0
+    for i in (n, 0):  # the ends, of which only the first shows what stands still
+        checks += 1
+        _blend(q0, q1, i / n, q)
+        forward(tree, q, frames)
+        _place_links(body, frames, centres)
+        if is_hit(body, around, frames, centres, touching, first):
+            return False, checks
+        first = moved
+    while stride > 1:  # halves first: what is in the way is found sooner
+        for i in range(stride // 2, n, stride):
+            checks += 1
+            _blend(q0, q1, i / n, q)
+            forward(tree, q, frames)
+            _place_links(body, frames, centres)
+            if is_hit(body, around, frames, centres, touching, first):
+                return False, checks
+        stride //= 2
+    return True, checks
+
+
+@njit(cache=True)
+def hands_free(body, around, wrists, touching, out):
+    """Write into `out` (n,) whether what the last frame carries is free, at (n, 3, 4).
+
+    The robot itself is not there: whatever arm brings the hand there hits no less.
+    """
+    last = len(body.lever_m) - 3
+    frames = np.zeros((last + 1, 3, 4))
+    centres = np.empty((len(body.frame), 3))
+    for i in range(len(wrists)):
+        frames[last] = wrists[i]
+        # Nothing of the hand is farther from its own frame than from the base's axis.
+        frames[0] = wrists[i]
+        _place_links(body, frames, centres)
+        out[i] = not (
+            _hits_scene(body, around, frames, centres, touching, last)
+            or _first_box(body, around, frames, centres, touching, last, 0)
+            < len(around.boxes)
+        )
+
+
+@njit(cache=True)
+def hand_boxes(body, around, wrist, touching, boxes):
+    """Write into `boxes` (b,) which are hit by what the last frame (3, 4) carries."""
+    last = len(body.lever_m) - 3
+    frames = np.zeros((last + 1, 3, 4))
+    centres = np.empty((len(body.frame), 3))
+    frames[last] = wrist
+    frames[0] = wrist
+    _place_links(body, frames, centres)
+    b = _first_box(body, around, frames, centres, touching, last, 0)
+    while b < len(boxes):
+        boxes[b] = True
+        b = _first_box(body, around, frames, centres, touching, last, b + 1)
+
+
+@njit(cache=True)
+def state_hits(tree, body, around, q, touching, boxes):
+    """Return whether scene and robot are hit; write it for each of `boxes` (b,)."""
+    frames = np.empty((len(tree.axis), 3, 4))
+    centres = np.empty((len(body.frame), 3))
+    forward(tree, q, frames)
+    _place_links(body, frames, centres)
+    b = _first_box(body, around, frames, centres, touching, 0, 0)
+    while b < len(boxes):
+        boxes[b] = True
+        b = _first_box(body, around, frames, centres, touching, 0, b + 1)
+    scene = _hits_scene(body, around, frames, centres, touching, 0)
+    return scene, _hits_itself(body, around, frames, centres, 0)
+
+
+@njit(cache=True)
+def is_hit(body, around, frames, centres, touching, first):
+    """Return whether anything carried by frame `first` or a later one hits anything."""
+    n = len(around.boxes)
+    return (
+        _hits_scene(body, around, frames, centres, touching, first)
+        or _first_box(body, around, frames, centres, touching, first, 0) < n
+        or _hits_itself(body, around, frames, centres, first)
+    )
+
+
+@njit(cache=True)
+def _hits_scene(body, around, frames, centres, touching, first):
+    """Return whether a link comes too near to the scanned points or to the ground."""
+    distance, origin, cell = around.distance_m, around.origin_m, around.cell_m
+    # A call with many arrays costs more than sums: only what is near needs one.
+    for k in range(len(body.frame)):
+        f, reach = body.frame[k], body.link_ball[k, 4]
+        if f < first:
+            continue
+        x, y, z = centres[k, 0], centres[k, 1], centres[k, 2]
+        is_low = f > 0 and z - reach < around.floor_m
+        is_near = is_low or _is_near(distance, origin, cell, x, y, z, reach)
+        if is_near and _link_hits_scene(body, around, frames, k, touching):
+            return True
+    return False
+
+
+@njit(cache=True)
+def _link_hits_scene(body, around, frames, k, touching):
+    """Return whether a sphere of a link is too near to the points or to the ground."""
+    distance, origin, cell = around.distance_m, around.origin_m, around.cell_m
+    f, is_bare = body.frame[k], touching and body.is_gripper[k]
+    lowest = _lowest(body, frames, k, around.lift_m) if is_bare else -np.inf
+    margin = 0.0 if is_bare else around.margin_m
+    reaches = body.radius_m if is_bare else body.reach_m
+    for c in range(body.link[k], body.link[k + 1]):
+        x, y, z = _point(frames, f, body.cluster_ball, c)
+        reach = body.cluster_ball[c, 4]
+        is_low = f > 0 and z - reach < around.floor_m
+        if not (is_low or _is_near(distance, origin, cell, x, y, z, reach)):
+            continue
+        for i in range(body.cluster[c], body.cluster[c + 1]):
+            x, y, z = _point(frames, f, body.at_m, i)
+            bottom = z - body.radius_m[i]
+            if bottom < lowest:
+                continue
+            if _is_near(distance, origin, cell, x, y, z, reaches[i]):
+                return True
+            bottom -= margin
+            is_low = f > 0 and bottom < around.floor_m
+            if is_low and bottom < _ground(around.ground_m, origin, cell, x, y):
+                return True
+    return False
+
+
+@njit(cache=True)
+def _first_box(body, around, frames, centres, touching, first, start):
+    """Return the first box from number `start` that is hit, or their count if none."""
+    boxes = around.boxes
+    for b in range(start, len(boxes)):
+        x, y, z = boxes[b, 0], boxes[b, 1], boxes[b, 2]
+        away = np.hypot(x - frames[0, 0, 3], y - frames[0, 1, 3])
+        if away >= body.span_m + boxes[b, 8] + around.box_margin_m:
+            continue
+        for k in range(len(body.frame)):
+            if body.frame[k] < first:
+                continue
+            reach = body.link_ball[k, 3] + boxes[b, 8] + around.box_margin_m
+            is_near = _square(centres, k, x, y, z) < reach * reach
+            if is_near and _link_hits_box(body, around, frames, k, b, touching):
+                return b
+    return len(boxes)
+
+
+@njit(cache=True)
+def _link_hits_box(body, around, frames, k, b, touching):
+    """Return whether a sphere of a link comes too near to a box."""
+    boxes, f = around.boxes, body.frame[k]
+    is_bare = touching and body.is_gripper[k]
+    margin = 0.0 if is_bare else around.box_margin_m
+    lowest = _lowest(body, frames, k, around.lift_m) if is_bare else -np.inf
+    for c in range(body.link[k], body.link[k + 1]):
+        x, y, z = _point(frames, f, body.cluster_ball, c)
+        reach = body.cluster_ball[c, 3] + margin
+        if _square_to_box(boxes, b, x, y, z) >= reach * reach:
+            continue
+        for i in range(body.cluster[c], body.cluster[c + 1]):
+            x, y, z = _point(frames, f, body.at_m, i)
+            reach = body.radius_m[i] + margin
+            if z - body.radius_m[i] < lowest:
+                continue
+            if _square_to_box(boxes, b, x, y, z) < reach * reach:
+                return True
+    return False
+
+
+@njit(cache=True)
+def _hits_itself(body, around, frames, centres, first):
+    """Return whether two links, one of them moved, come too near to each other."""
+    frame, pairs, ball, margin = (
+        body.frame,
+        body.pairs,
+        body.link_ball,
+        around.self_margin_m,
+    )
+    for n in range(len(pairs)):
+        k, m = pairs[n, 0], pairs[n, 1]
+        reach = ball[k, 3] + ball[m, 3] + margin
+        x, y, z = centres[m, 0], centres[m, 1], centres[m, 2]
+        if _square(centres, k, x, y, z) >= reach * reach:
+            continue
+        if max(frame[k], frame[m]) < first:
+            continue
+        args = body.cluster_ball, body.at_m, body.radius_m, body.cluster, frames
+        first_k, last_k = body.link[k], body.link[k + 1]
+        for d in range(body.link[m], body.link[m + 1]):
+            x, y, z = _point(frames, frame[m], body.cluster_ball, d)
+            reach = body.cluster_ball[d, 3] + ball[k, 3] + margin
+            if _square(centres, k, x, y, z) >= reach * reach:
+                continue
+            if _hits_cluster(args, d, first_k, last_k, frame[m], frame[k], margin):
+                return True
+    return False
+
+
+@njit(cache=True)
+def _hits_cluster(args, d, first_c, last_c, g, f, margin):
+    """Return whether cluster d in frame g is too near to clusters c in frame f."""
+    ball, at, radius, cluster, frames = args
+    u, v, w = _point(frames, g, ball, d)
+    for c in range(first_c, last_c):
+        x, y, z = _point(frames, f, ball, c)
+        reach = ball[c, 3] + ball[d, 3] + margin
+        if (x - u) ** 2 + (y - v) ** 2 + (z - w) ** 2 >= reach * reach:
+            continue
+        for i in range(cluster[c], cluster[c + 1]):
+            x, y, z = _point(frames, f, at, i)
+            reach = radius[i] + ball[d, 3] + margin
+            if (x - u) ** 2 + (y - v) ** 2 + (z - w) ** 2 >= reach * reach:
+                continue
+            for j in range(cluster[d], cluster[d + 1]):
+                a, b, e = _point(frames, g, at, j)
+                reach = radius[i] + radius[j] + margin
+                if (x - a) ** 2 + (y - b) ** 2 + (z - e) ** 2 < reach * reach:
+                    return True
+    return False
+
+
+@njit(cache=True)
+def _is_near(distance, origin, cell_m, x, y, z, reach_m):
+    """Return whether a point is nearer than `reach_m` to what was scanned."""
+    scale = 1.0 / cell_m
+    u = (x - origin[0]) * scale
+    v = (y - origin[1]) * scale
+    w = (z - origin[2]) * scale
+    nx, ny, nz = distance.shape
+    if not (0.0 <= u < nx - 1 and 0.0 <= v < ny - 1):
+        return True
+    # Above the field nothing was scanned, and the ground is looked at on its own.
+    w = min(max(w, 0.0), nz - 1.000001)
+    nearest = distance[int(u + 0.5), int(v + 0.5), int(w + 0.5)]
+    # No distance differs by more than the way to the centre of the cell.
+    slack = 0.867 * cell_m
+    if nearest >= reach_m + slack:
+        return False
+    if nearest + slack < reach_m:
+        return True
+    return _between(distance, u, v, w) < reach_m
+
+
+@njit(cache=True)
+def _between(distance, u, v, w):
+    """Return the distance between the centres of eight cells, linear in each axis."""
+    i, j, k = int(u), int(v), int(w)
+    u, v, w = u - i, v - j, w - k
+    total = 0.0
+    for a in range(2):
+        for b in range(2):
+            share = (u if a else 1.0 - u) * (v if b else 1.0 - v)
+            low, high = distance[i + a, j + b, k], distance[i + a, j + b, k + 1]
+            total += share * (low + w * (high - low))
+    return total
+
+
+@njit(cache=True)
+def _ground(ground, origin, cell_m, x, y):
+    """Return the height of the ground [m]; the field holds the point."""
+    i = int((x - origin[0]) / cell_m + 0.5)
+    j = int((y - origin[1]) / cell_m + 0.5)
+    return ground[i, j]
+
+
+@njit(cache=True)
+def _square_to_box(boxes, b, x, y, z):
+    """Return the squared distance of a point to a box that is turned about z."""
+    x, y, z = x - boxes[b, 0], y - boxes[b, 1], z - boxes[b, 2]
+    c, s = boxes[b, 6], boxes[b, 7]
+    u = max(abs(c * x + s * y) - boxes[b, 3], 0.0)
+    v = max(abs(c * y - s * x) - boxes[b, 4], 0.0)
+    w = max(abs(z) - boxes[b, 5], 0.0)
+    return u * u + v * v + w * w
+
+
+@njit(cache=True)
+def _lowest(body, frames, k, lift_m):
+    """Return below which height a held object may touch; the gripper must not [m]."""
+    if k != body.n_robot:
+        return -np.inf
+    lowest = np.inf
+    for i in range(body.cluster[body.link[k]], body.cluster[body.link[k + 1]]):
+        _, _, z = _point(frames, body.frame[k], body.at_m, i)
+        lowest = min(lowest, z - body.radius_m[i])
+    return lowest + lift_m
+
+
+@njit(cache=True)
+def _place_links(body, frames, out):
+    """Write the centres of the balls around the links into `out` (l, 3)."""
+    for k in range(len(out)):
+        x, y, z = _point(frames, body.frame[k], body.link_ball, k)
+        out[k, 0], out[k, 1], out[k, 2] = x, y, z
+
+
+@njit(cache=True)
+def _point(frames, f, at, i):
+    """Return row i of points of frame f, in the world."""
+    # Views of rows cost more than the sums, so single numbers are read.
+    x, y, z = at[i, 0], at[i, 1], at[i, 2]
+    return (
+        frames[f, 0, 0] * x
+        + frames[f, 0, 1] * y
+        + frames[f, 0, 2] * z
+        + frames[f, 0, 3],
+        frames[f, 1, 0] * x
+        + frames[f, 1, 1] * y
+        + frames[f, 1, 2] * z
+        + frames[f, 1, 3],
+        frames[f, 2, 0] * x
+        + frames[f, 2, 1] * y
+        + frames[f, 2, 2] * z
+        + frames[f, 2, 3],
+    )
+
+
+@njit(cache=True)
+def _square(points, k, x, y, z):
+    """Return the squared distance of row k of points to a point."""
+    u, v, w = points[k, 0] - x, points[k, 1] - y, points[k, 2] - z
+    return u * u + v * v + w * w
+
+
+@njit(cache=True)
+def _blend(q0, q1, share, out):
+    """Write the configuration at a share of the way into `out`."""
+    for i in range(len(out)):
+        out[i] = q0[i] + share * (q1[i] - q0[i])

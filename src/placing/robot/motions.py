@@ -1,0 +1,108 @@
+"""From a goal at an object to a whole motion of the robot.
+
+Letters: t rows of a path, a joints of the arm.
+"""
+
+import numpy as np
+
+from placing.rigid import Array
+from placing.robot.checker import Held, SceneChecker
+from placing.robot.driving import Floor
+from placing.robot.goals import Search
+from placing.robot.paths import connect
+from placing.robot.planning import (
+    NO_PATH,
+    PICKING,
+    PUTTING,
+    Segment,
+)
+from placing.robot.reach import (
+    Goal,
+)
+
+
+def segments_of(search: Search, goal: Goal, floor: Floor) -> tuple[Segment, ...] | None:
+    """Return the segments of a motion to a goal and back, if there are paths."""
+    search.reached(NO_PATH)
+    settings = search.without.model.settings
+    carry, stow = goal.carry, np.asarray(settings.stow)
+    if search.is_putting:
+        first, last = goal.down, goal.back
+        arms, checkers = (carry, stow), (search.without, search.among)
+        held = (goal.held, None)
+    else:
+        first, last = goal.back[::-1], goal.down[::-1]
+        arms, checkers = (stow, carry), (search.among, search.without)
+        held = (None, goal.held)
+    arrive = _arrive(search, floor, checkers[0], held[0], arms[0], first[0])
+    if arrive is None:
+        return None
+    leave = _leave(search, floor, checkers[1], held[1], arms[1], last[-1])
+    if leave is None:
+        return None
+    paths = (*arrive, first, last, leave)
+    names = PUTTING if search.is_putting else PICKING
+    wide, narrow = settings.max_opening_m, goal.grasp.width_m
+    openings = (narrow, wide) if search.is_putting else (wide, narrow)
+    return tuple(
+        Segment(name, path, (i < 4) == search.is_putting, openings[i >= 4])
+        for i, (name, path) in enumerate(zip(names, paths, strict=True))
+    )
+
+
+def _arrive(
+    search: Search,
+    floor: Floor,
+    checker: SceneChecker,
+    held: Held | None,
+    arm: Array,
+    end: Array,
+) -> tuple[Array, Array, Array] | None:
+    """Return the ways of the base, of the torso and of the arm to `end`, if any."""
+    raised = np.concatenate([end[:4], arm])
+    low = raised.copy()
+    low[3] = floor.low_m
+    if not checker.is_edge_free(low, raised, held):
+        return None
+    start = floor.start if search.start is None else search.start.copy()
+    start[4:] = arm
+    drive = floor.path(low, checker, held, start)
+    if drive is None:
+        return None
+    # The yaw of a path is continuous: what follows has as many turns as the drive.
+    turns = drive[-1, 2] - end[2]
+    reach = _connected(search, checker, raised, end, held)
+    if reach is None:
+        return None
+    lift = np.array([low, raised])
+    for path in (lift, reach):
+        path[:, 2] += turns
+    return drive, lift, reach
+
+
+def _leave(
+    search: Search,
+    floor: Floor,
+    checker: SceneChecker,
+    held: Held | None,
+    arm: Array,
+    begin: Array,
+) -> Array | None:
+    """Return the way of the arm from `begin` to where it is folded, torso low."""
+    folded = np.concatenate([begin[:4], arm])
+    low = folded.copy()
+    low[3] = floor.low_m
+    if not checker.is_edge_free(folded, low, held):
+        return None
+    path = _connected(search, checker, begin, folded, held)
+    return None if path is None else np.vstack([path, low])
+
+
+def _connected(
+    search: Search, checker: SceneChecker, start: Array, end: Array, held: Held | None
+) -> Array | None:
+    """Return a path of the arm, while paths may be sought."""
+    if search.n_paths <= 0:
+        return None
+    search.n_paths -= 1
+    return connect(checker, start, end, held, search.query)
