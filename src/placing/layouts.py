@@ -16,10 +16,11 @@ def layout_reader(
 ) -> Callable[[str], Layout]:
     """Return the function from the name of a scene to its layout.
 
-    `rooms` and `scans` are files of `folder` checked by `schema`, with objects of
-    `catalogue`; `thor` are scenes of the installed designers' rooms, mapped by `types`.
+    `rooms`, `scans` and `scenarios` are files of `folder` checked by `schema`, with
+    objects of `catalogue`; `thor` are scenes of the installed designers' rooms, mapped
+    by `types`.
     """
-    if dataset in ("rooms", "scans"):
+    if dataset in ("rooms", "scans", "scenarios"):
         return rooms.layout_reader(folder, schema, catalogue)
     data, thor_types = read_data(find_data()), read_types(types)
     return lambda name: thor.read_layout(data, name, thor_types)

@@ -85,7 +85,7 @@ rule picture_rooms:
     input:
         rooms=room_files,
         room_schema="workflow/schemas/room.schema.yaml",
-        catalogue="config/objects.csv",
+        catalogue=catalogue_of,
     output:
         rooms=directory("results/{dataset}/pictures/rooms"),
         arrangements=directory("results/{dataset}/pictures/arrangements"),

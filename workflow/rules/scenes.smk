@@ -20,7 +20,7 @@ rule preprocess_cloud:
     input:
         rooms=room_files,
         room_schema="workflow/schemas/room.schema.yaml",
-        catalogue="config/objects.csv",
+        catalogue=catalogue_of,
         types="config/thor_types.csv",
     output:
         clouds=directory("results/{dataset}/clouds/fold{fold}"),

@@ -20,7 +20,7 @@ log = logging.getLogger(__name__)
 
 
 def main(
-    dataset: Literal["rooms", "scans", "thor"],
+    dataset: Literal["rooms", "scans", "scenarios", "thor"],
     scenes: tuple[str, ...],
     rooms: Path,
     schema: Path,

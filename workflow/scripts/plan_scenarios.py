@@ -1,0 +1,100 @@
+"""Plan how a robot fetches the objects of every scenario and arranges them."""
+
+import logging
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from tqdm import tqdm
+
+from command import run
+from placing.answering import Asked
+from placing.artifacts.certificates import write_certificates
+from placing.artifacts.features import read_features
+from placing.artifacts.formats import write_table
+from placing.artifacts.scenes import read_scene
+from placing.artifacts.theta import read_learned
+from placing.clouds.ply import read_ply
+from placing.learned import Choices
+from placing.robot.grasps import read_grasps
+from placing.robot.model import load_robot
+from placing.robot.settings import read_robot
+from placing.robot_plans import TRIED_COLUMNS, plan_table, rows_of, tried_rows
+from placing.rooms.file import read_yaml
+from placing.rooms.reader import layout_reader
+from placing.scenarios import ScenarioConfig, plan_scenario, world_of
+from placing.scene_model import SceneModel, Settings
+from placing.seeds import generator
+from placing.tasks import questions
+
+log = logging.getLogger(__name__)
+
+
+def main(
+    theta: Path,
+    clouds: Path,
+    scenes: Path,
+    features: Path,
+    rooms: Path,
+    catalogue: Path,
+    schemas: Path,
+    robot: Path,
+    grasps: Path,
+    plans: Path,
+    tried: Path,
+    certificates: Path,
+    seed: int,
+    settings: Settings,
+    planning: ScenarioConfig,
+) -> None:
+    """Plan how a robot fetches the objects of every scenario and arranges them.
+
+    Args:
+        theta: Directory of what all rooms teach.
+        clouds: Directory of the clouds of the scenarios.
+        scenes: Directory of their scenes.
+        features: Directory of their features.
+        rooms: Directory of their room files.
+        catalogue: Table of their objects.
+        schemas: Directory of the JSON Schemas of room files, robots and grasps.
+        robot: Robot file.
+        grasps: Sheet of grasps.
+        plans: Table to write: what the robot puts where, or why not.
+        tried: Table to write: all that was tried.
+        certificates: Directory of certificates to write.
+        seed: Root of all random streams.
+        settings: Sections of the configuration that answering looks at.
+        planning: Sections of the configuration that planning looks at.
+    """
+    robot_schema = read_yaml(schemas / "robot.schema.yaml")
+    learned, model = read_learned(theta), load_robot(read_robot(robot, robot_schema))
+    sheet = read_grasps(grasps, read_yaml(schemas / "grasps.schema.yaml"))
+    read = layout_reader(rooms, schemas / "room.schema.yaml", catalogue)
+    rows, asked_for, found = [], [], []
+    for path in tqdm(sorted(scenes.glob("*.json")), unit="scene", disable=None):
+        scene = read_scene(path)
+        seen = read_features(features / f"{scene.scene}.npz")
+        (question,) = questions(scene, "empty")
+        # `dp` asks for no K and no omega.
+        stream = partial(generator, seed, "plan_scenarios", scene.scene)
+        args = SceneModel(scene, *seen, learned, settings), question, Choices(1, 1.0)
+        points = np.asarray(read_ply(clouds / f"{scene.scene}.ply").points, float)
+        robotic, some, failed = plan_scenario(
+            *(Asked(stream, *args), read(scene.scene), points),
+            *((model, sheet), planning, seed),
+        )
+        found += some
+        rows += rows_of(world_of(scene.scene), question, robotic)
+        asked_for += tried_rows(world_of(scene.scene), question, robotic)
+        for name, reason in sorted({**robotic.refused, **failed}.items()):
+            log.warning("%s: %s is not placed: %s", scene.scene, name, reason)
+    write_table(plans, plan_table(rows))
+    write_table(tried, pd.DataFrame(asked_for, columns=list(TRIED_COLUMNS)))
+    urdf, arm = model.settings.urdf, model.settings.chain
+    write_certificates(certificates, robot, urdf, arm, found)
+    log.info("%d objects are placed", len(found))
+
+
+if __name__ == "__main__":
+    run(main)
