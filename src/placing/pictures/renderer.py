@@ -25,6 +25,8 @@ Picture = NDArray[np.uint8]
 
 OFFSET_M = 1e-3
 """Shadow rays start this far from the surface, to not hit it again."""
+HIDING_M = 0.01
+"""What is nearer to a point does not hide it: it is on the surface of a mesh."""
 OUTLINE = 5.0
 """Pixels that differ from a neighbour by more, of 255, are sampled again."""
 SUBPIXELS = ((-0.125, -0.375), (0.375, -0.125), (0.125, 0.375), (-0.375, 0.125))
@@ -66,6 +68,29 @@ def render(
     finer = surface.shade(eye, camera.rays(samples, size)).reshape(-1, 4, 3)
     picture.reshape(-1, 3)[again] = finer.mean(axis=1)
     return (picture + 0.5).astype(np.uint8)
+
+
+def hidden(
+    meshes: Sequence[trimesh.Trimesh], points: NDArray[np.float64], eyes: NDArray
+) -> NDArray[np.float64]:
+    """Return the share of points on the meshes that each eye does not see, shape (e,).
+
+    `points` is (r, 3), `eyes` is (e, 3).
+    """
+    import open3d as o3d  # here, because it takes a second that few stages need
+
+    mesh = joined(meshes)
+    tensor = o3d.core.Tensor.from_numpy
+    caster = o3d.t.geometry.RaycastingScene()
+    caster.add_triangles(
+        tensor(np.array(mesh.vertices, np.float32)),
+        tensor(np.array(mesh.faces, np.uint32)),
+    )
+    away = eyes[:, None] - points  # (e, r, 3)
+    far = np.linalg.norm(away, axis=2, keepdims=True)
+    rays = np.concatenate([points + HIDING_M * away / far, away / far], axis=2)
+    occluded = caster.test_occlusions(tensor(rays.astype(np.float32)))
+    return occluded.numpy().mean(axis=1)
 
 
 def _outlines(picture: Array) -> NDArray[np.bool_]:

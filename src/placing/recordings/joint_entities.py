@@ -58,8 +58,8 @@ def category_color(category: str) -> Color:
 def log_static(stream: rr.RecordingStream, content: JointRecording, eye: Eye) -> None:
     """Log what does not change with the step."""
     stream.log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
-    _log_cloud(stream, content.cloud, eye)
-    _log_areas(stream, content.areas)
+    log_cloud(stream, content.cloud, eye)
+    log_areas(stream, content.areas)
     for chosen in content.placed:
         color = category_color(chosen.item.category)
         mesh = shaded_mesh(chosen.mesh, color)
@@ -85,7 +85,7 @@ def shaded_mesh(mesh: Trimesh | None, color: Color) -> rr.Mesh3D:
     )
 
 
-def _log_cloud(stream: rr.RecordingStream, cloud: Cloud, eye: Eye) -> None:
+def log_cloud(stream: rr.RecordingStream, cloud: Cloud, eye: Eye) -> None:
     """Log the cloud as seen, cut open towards the eye."""
     is_known = cloud.normals.any(axis=1)
     lit = np.where(is_known, _lit(cloud.normals), 1.0)
@@ -123,7 +123,7 @@ def area_title(area: PlacingArea) -> str:
     return f"{area.area}, {height(area)} m"
 
 
-def _log_areas(stream: rr.RecordingStream, areas: tuple[PlacingArea, ...]) -> None:
+def log_areas(stream: rr.RecordingStream, areas: tuple[PlacingArea, ...]) -> None:
     """Log the outlines of the areas, and their names with their heights."""
     outlines = [outline(area) for area in areas]
     lines = rr.LineStrips3D(strips(outlines), colors=AREA, radii=0.004)
