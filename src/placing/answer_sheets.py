@@ -26,6 +26,7 @@ from placing.likelihoods import (
     with_uniform,
 )
 from placing.methods import METHODS
+from placing.offering import OPTION_COLUMNS, OfferingConfig, offered_rows
 
 Array = NDArray[np.float64]
 
@@ -40,6 +41,7 @@ COLUMNS = {
     "traces": TRACE_COLUMNS,
     "diagnoses": DIAGNOSTIC_COLUMNS,
     "explanations": EXPLANATION_COLUMNS,
+    "options": OPTION_COLUMNS,
 }
 """The tables and their columns."""
 
@@ -65,6 +67,10 @@ class Sheets:
                     key = density_key(method, asked.question.name, category)
                     kept[key] = density
         return kept
+
+    def offer(self, task: str, asked: Asked, config: OfferingConfig) -> None:
+        """Add what the robot may choose among in a question that was answered."""
+        self._rows["options"] += offered_rows(task, asked, config)
 
     def table(self, name: str) -> pd.DataFrame:
         """Return one of the tables of `COLUMNS`."""

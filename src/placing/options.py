@@ -58,12 +58,12 @@ def thin_options(options: Options, n_best: int, n_spread: int) -> NDArray[np.int
         return order
     is_kept = np.zeros(len(options.yaw), np.bool_)
     is_kept[order[:n_best]] = True
-    spread = _spread_out(options, order[n_best:], order[:n_best], n_spread)
+    spread = spread_out(options, order[n_best:], order[:n_best], n_spread)
     is_kept[spread] = True
     return order[is_kept[order]]
 
 
-def _spread_out(
+def spread_out(
     options: Options, order: NDArray[np.int64], kept: NDArray[np.int64], n: int
 ) -> NDArray[np.int64]:
     """Return `n` of the options in `order` that keep a distance, (n,)."""

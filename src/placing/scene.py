@@ -146,6 +146,14 @@ def extents(item: SceneObject, placement: Placement) -> Array:
     return np.abs(rigid.matrix(placement.orientation)) @ np.array(item.size_m)
 
 
+def standing_box(item: SceneObject, placement: Placement) -> Array:
+    """Return centre, size and yaw of the box around a placed object, shape (7,)."""
+    size, yaw = extents(item, placement), 0.0
+    if abs(size[2] - item.size_m[2]) < 1e-6:  # it stands upright
+        size, yaw = item.size_m, float(rigid.yaw_of(placement.orientation))
+    return np.array([*placement.location, *size, yaw])
+
+
 def resting_point(item: SceneObject, placement: Placement) -> Array:
     """Return the point below the object's centre on which it rests, shape (3,) [m]."""
     drop = extents(item, placement)[2] / 2

@@ -22,7 +22,7 @@ from placing.learned import Learned
 from placing.likelihoods import nearest_places
 from placing.object_context import given_object, mix, pair_density
 from placing.potential import Theta, log_psi_human
-from placing.scene import Placement, Scene, extents
+from placing.scene import Placement, Scene, standing_box
 
 Array = NDArray[np.float64]
 
@@ -115,10 +115,7 @@ class SceneModel:
         key = labels, placement.object_id
         if key not in self._boxes:
             item = self.items[placement.object_id]
-            size, yaw = extents(item, placement), 0.0
-            if abs(size[2] - item.size_m[2]) < 1e-6:  # it stands upright
-                size, yaw = item.size_m, float(rigid.yaw_of(placement.orientation))
-            self._boxes[key] = np.array([*placement.location, *size, yaw])
+            self._boxes[key] = standing_box(item, placement)
         return self._boxes[key]
 
     def baseline(self, method: str, category: str) -> tuple[Array, Array]:

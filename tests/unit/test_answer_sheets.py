@@ -14,6 +14,7 @@ from placing.errors import BadArtifact
 from placing.learned import Choices
 from placing.likelihoods import ScoringConfig
 from placing.methods import METHODS
+from placing.offering import OfferingConfig
 from placing.seeds import generator
 from placing.tasks import questions
 
@@ -27,7 +28,9 @@ def filled():
     question = questions(model.scene, "filled")[1]
     asked = Asked(partial(generator, 0), model, question, Choices(2, 0.5))
     sheets = Sheets(ScoringConfig(0.01), RANKS)
-    return sheets, asked, sheets.fill("filled", asked)
+    kept = sheets.fill("filled", asked)
+    sheets.offer("filled", asked, OfferingConfig(3, 2, 2, 0.125))
+    return sheets, asked, kept
 
 
 @pytest.mark.parametrize("name", COLUMNS)

@@ -113,7 +113,8 @@ def test_the_real_study_can_be_planned(project):
     # Without each fold and each pair, in two data sets; with all of one for the scans.
     assert jobs["learn_theta"] == 2 * (5 + 10) + 1
     assert jobs["tune_methods"] == 10
-    assert jobs["sample_arrangement"] == 10
+    assert jobs["sample_arrangement"] == jobs["plan_placing"] == 10
+    assert jobs["tabulate_table1"] == 2
     assert jobs["tabulate_table2"] == jobs["record_joint"] == jobs["picture_desk"] == 1
 
 

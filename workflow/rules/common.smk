@@ -75,15 +75,25 @@ except PlacingError as error:
     sys.exit(f"Error: {error}")
 
 DATASETS = sorted({row["dataset"] for row in SCENES})
+SCENARIOS = "scenarios"
+"""The data set of Section 4.3: in no fold, and in no table but its own."""
 STUDIED = [dataset for dataset in DATASETS if dataset != SCANS]
 """The data sets of figure 6, which learn from their own other folds."""
 FOLDS = {
     dataset: sorted({row["fold"] for row in SCENES if row["dataset"] == dataset})
     for dataset in DATASETS
 }
+FOLDS[SCENARIOS] = [0]
 ROOM_SCENES = [row["scene"] for row in SCENES if row["dataset"] == "rooms"]
 SCAN_SCENES = [row["scene"] for row in SCENES if row["dataset"] == SCANS]
 SCAN_FILES = [f"resources/scans/{scene}.yaml" for scene in SCAN_SCENES]
+ROOMS = sorted(path.stem for path in Path("resources/rooms").glob("*.yaml"))
+SCENARIO_SCENES = [
+    path.stem
+    for path in sorted(Path(f"resources/{SCENARIOS}").glob("*.yaml"))
+    if sorted(ROOM_SCENES) == ROOMS
+]
+"""Scenarios, which are arranged with what all rooms teach and not with what some do."""
 DESK = {"scene": "office2", "furniture": "desk1"}
 """The desk of figure 7 of the paper: the large one among the scans."""
 OFFICE = next(
@@ -94,7 +104,7 @@ OFFICE = next(
 
 
 wildcard_constraints:
-    dataset="|".join(DATASETS),
+    dataset="|".join([*DATASETS, SCENARIOS]),
     fold="|".join(sorted({str(row["fold"]) for row in SCENES})),
     task="|".join(TASKS),
     held_out=r"all|fold\d+(_fold\d+)?",
@@ -102,12 +112,33 @@ wildcard_constraints:
 
 def scenes_of(wildcards):
     """Return the scenes of a data set, of one fold where the job has a fold."""
+    if wildcards.dataset == SCENARIOS:
+        return SCENARIO_SCENES
     fold = getattr(wildcards, "fold", None)
     return [
         row["scene"]
         for row in SCENES
         if row["dataset"] == wildcards.dataset and fold in (None, str(row["fold"]))
     ]
+
+
+def robot_scenes(wildcards):
+    """Return the scenes of a fold in which the robot works.
+
+    Of every kind of scene and fold the first by name, then the second, until there
+    are enough.
+    """
+    turns = {}
+    rows = [row for row in SCENES if row["dataset"] == wildcards.dataset]
+    for row in sorted(rows, key=lambda row: row["scene"]):
+        turns.setdefault((row["kind"], row["fold"]), []).append(row)
+    queue = [
+        (turn, *key, row["scene"], row["fold"])
+        for key, of_key in turns.items()
+        for turn, row in enumerate(of_key)
+    ]
+    first = sorted(queue)[: config["robot_scenes"]["n_most"]]
+    return sorted(name for *_, name, fold in first if str(fold) == wildcards.fold)
 
 
 def room_files(wildcards):
@@ -128,6 +159,7 @@ def every(path, dataset):
 def checks_of(wildcards):
     """Return the tables of checks of a data set."""
     names = {"rooms": ["areas", "arrangements"], "thor": ["areas", "support"]}
+    names = {dataset: [*some, "certificates"] for dataset, some in names.items()}
     folder = f"results/{wildcards.dataset}/checks"
     return [f"{folder}/{name}.csv" for name in names[wildcards.dataset]]
 
@@ -140,9 +172,11 @@ def leaves():
         "tables/claims.md",
         "tables/diagnostics.md",
         "tables/coverage.md",
+        "tables/table1.md",
         "figures/figure6_{task}.png",
         "figures/coverage.png",
         "recordings/fold{fold}/{task}/dp",
+        "recordings/fold{fold}/plans",
         "checks/passed.txt",
     ]
     found = [
@@ -158,7 +192,13 @@ def leaves():
         found.append("results/rooms/tables/semantics.csv")
     if OFFICE["scene"] in ROOM_SCENES:
         found += [f"results/rooms/figures/figure{n}.png" for n in (4, 5)]
+    if SCENARIO_SCENES:
+        found += [f"results/{SCENARIOS}/{name}" for name in LEAVES_OF_SCENARIOS]
     return found + leaves_of_scans() if SCAN_SCENES else found
+
+
+LEAVES_OF_SCENARIOS = ["tables/execution.csv", "checks/certificates.csv"]
+LEAVES_OF_SCENARIOS += ["pictures/rooms.png"]
 
 
 def leaves_of_scans():
@@ -217,7 +257,14 @@ def of_pairs(path):
 
 def folder_of(wildcards):
     """Return the folder of the room files of a data set."""
-    return f"resources/{'scans' if wildcards.dataset == 'scans' else 'rooms'}"
+    own = wildcards.dataset in (SCANS, SCENARIOS)
+    return f"resources/{wildcards.dataset if own else 'rooms'}"
+
+
+def catalogue_of(wildcards):
+    """Return the table of objects of a data set."""
+    name = "scenario_objects" if wildcards.dataset == SCENARIOS else "objects"
+    return f"config/{name}.csv"
 
 
 def taught(path):

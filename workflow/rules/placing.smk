@@ -19,6 +19,7 @@ OUTPUTS
     results/{dataset}/traces/{task}/fold{fold}.parquet       every sweep of every chain
     results/{dataset}/diagnostics/{task}/fold{fold}.parquet
     results/{dataset}/explanations/{task}/fold{fold}.parquet
+    results/{dataset}/options/{task}/fold{fold}.parquet      for the robot
     results/{dataset}/scores/{task}/fold{fold}.parquet
     results/{dataset}/fold{fold}.csv
 """
@@ -110,6 +111,7 @@ rule sample_arrangement:
         explanations=of_tasks(
             "results/{dataset}/explanations/{task}/fold{fold}.parquet"
         ),
+        options=of_tasks("results/{dataset}/options/{task}/fold{fold}.parquet"),
     log:
         "results/logs/sample_arrangement/{dataset}/fold{fold}.log",
     benchmark:
@@ -117,8 +119,9 @@ rule sample_arrangement:
     params:
         code=digest("sample_arrangement"),
         seed=config["seed"],
+        robot_scenes=robot_scenes,
         settings=flags(*ANSWERING, within="settings."),
-        scoring=flags("scoring"),
+        scoring=flags("scoring", "offering"),
     shell:
         r"""
         python workflow/scripts/sample_arrangement.py \
@@ -134,6 +137,8 @@ rule sample_arrangement:
             --traces {output.traces:q} \
             --diagnoses {output.diagnoses:q} \
             --explanations {output.explanations:q} \
+            --options {output.options:q} \
+            --robot-scenes {params.robot_scenes:q} \
             --seed {params.seed:q} \
             {params.settings:q} \
             {params.scoring:q} \

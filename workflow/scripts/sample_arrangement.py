@@ -5,9 +5,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-import numpy as np
 from numpy.random import Generator
-from numpy.typing import NDArray
 from tqdm import tqdm
 
 from command import run
@@ -21,6 +19,7 @@ from placing.artifacts.theta import read_learned
 from placing.artifacts.tuning import read_tuning
 from placing.learned import Choices, Learned
 from placing.likelihoods import ScoringConfig
+from placing.offering import OfferingConfig
 from placing.scene_model import SceneModel, Settings
 from placing.seeds import generator
 from placing.tasks import TASKS, questions
@@ -41,9 +40,12 @@ def main(
     traces: tuple[Path, ...],
     diagnoses: tuple[Path, ...],
     explanations: tuple[Path, ...],
+    options: tuple[Path, ...],
     seed: int,
     settings: Settings,
     scoring: ScoringConfig,
+    offering: OfferingConfig,
+    robot_scenes: tuple[str, ...] = (),
 ) -> None:
     """Arrange the scenes of a fold with every method; outputs are filled, then empty.
 
@@ -60,22 +62,30 @@ def main(
         traces: Tables to write: every sweep of every chain of `dp`.
         diagnoses: Tables to write: whether the chains of a question agree.
         explanations: Tables to write: why `dp` and `dp_object` chose a place.
+        options: Tables to write: the places that a robot may choose among.
         seed: Root of all random streams.
         settings: Sections of the configuration that answering looks at.
         scoring: How densities are scored.
+        offering: Which places a robot may choose among.
+        robot_scenes: Scenes in which a robot works.
     """
-    learned = read_learned(theta)
-    choices, ranks = zip(*(read_tuning(tuning, task) for task in TASKS), strict=True)
-    sheets = [Sheets(scoring, r[task]) for task, r in zip(TASKS, ranks, strict=True)]
-    stream = partial(named, seed, dataset)
+    learned, offer = read_learned(theta), dict.fromkeys(robot_scenes, offering)
+    choices, sheets = blank(tuning, scoring)
+    args = sheets, choices, partial(named, seed, dataset), offer, densities
     for path in tqdm(sorted(scenes.glob("*.json")), unit="scene", disable=None):
-        model = read_model(path, features, learned, settings)
-        for task in range(len(TASKS)):
-            kept = fill(sheets[task], model, TASKS[task], choices[task], stream)
-            write_densities(densities[task] / f"{path.stem}.npz", kept)
-    outputs = arrangements, likelihoods, poses, traces, diagnoses, explanations
+        fill(read_model(path, features, learned, settings), *args)
+    outputs = arrangements, likelihoods, poses, traces, diagnoses, explanations, options
     write(sheets, dict(zip(COLUMNS, outputs, strict=True)))
     log.info("%s: %d objects placed", dataset, sum(s.n_placed() for s in sheets))
+
+
+def blank(
+    tuning: Path, scoring: ScoringConfig
+) -> tuple[tuple[Choices, ...], list[Sheets]]:
+    """Return what was chosen for each task, and its sheets without answers."""
+    choices, ranks = zip(*(read_tuning(tuning, task) for task in TASKS), strict=True)
+    pairs = zip(TASKS, ranks, strict=True)
+    return choices, [Sheets(scoring, of_task[task]) for task, of_task in pairs]
 
 
 def read_model(
@@ -88,15 +98,26 @@ def read_model(
 
 
 def fill(
-    sheets: Sheets, model: SceneModel, task: str, choices: Choices, stream: partial
-) -> dict[str, NDArray[np.float64]]:
-    """Answer all questions of a task about a scene; return the densities to keep."""
-    kept = {}
-    for question in questions(model.scene, task):
-        of_question = partial(stream, model.scene.scene, task, question.name)
-        asked = Asked(of_question, model, question, choices)
-        kept |= sheets.fill(task, asked)
-    return kept
+    model: SceneModel,
+    sheets: Sequence[Sheets],
+    choices: Sequence[Choices],
+    stream: partial,
+    offer: Mapping[str, OfferingConfig],
+    densities: Sequence[Path],
+) -> None:
+    """Answer all questions of both tasks about a scene; write the densities to keep."""
+    scene = model.scene
+    for task, sheet, chosen, folder in zip(
+        TASKS, sheets, choices, densities, strict=True
+    ):
+        kept = {}
+        for question in questions(scene, task):
+            of_question = partial(stream, scene.scene, task, question.name)
+            asked = Asked(of_question, model, question, chosen)
+            kept |= sheet.fill(task, asked)
+            if scene.scene in offer:
+                sheet.offer(task, asked, offer[scene.scene])
+        write_densities(folder / f"{scene.scene}.npz", kept)
 
 
 def write(sheets: Sequence[Sheets], outputs: Mapping[str, Sequence[Path]]) -> None:

@@ -6,19 +6,37 @@ from pathlib import Path
 import pandas as pd
 
 from command import run
+from placing.readme_tables import table1_averages, table2_averages
 from placing.report import averages_by_task, write_text
 
 
-def main(figure6: tuple[Path, ...], readme: Path) -> None:
+def main(
+    figure6: tuple[Path, ...],
+    table1: tuple[Path, ...],
+    table2: Path,
+    paper: Path,
+    readme: Path,
+) -> None:
     """Write the results of a run into the README.
 
     Args:
         figure6: Tables of Figure 6, one per data set.
-        readme: File whose part between the `<!-- results -->` markers is replaced.
+        table1: Long tables of Table 1, results/{dataset}/tables/table1_long.csv.
+        table2: Table 2.
+        paper: Numbers of the paper.
+        readme: File whose parts between markers such as `<!-- figure6 -->` are
+            replaced.
     """
-    tables = pd.concat([pd.read_csv(path) for path in figure6])
+    published = pd.read_csv(paper)
+    longs = {path.parent.parent.name: pd.read_csv(path) for path in table1}
+    parts = {
+        "figure6": averages_by_task(pd.concat([pd.read_csv(path) for path in figure6])),
+        "table1": table1_averages(longs, published),
+        "table2": table2_averages(pd.read_csv(table2), published),
+    }
     text = readme.read_text()
-    text = replace_part(text, "results", averages_by_task(tables))
+    for name, part in parts.items():
+        text = replace_part(text, name, part)
     write_text(readme, text)
 
 

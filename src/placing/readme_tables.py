@@ -1,0 +1,56 @@
+"""The averages of Tables 1 and 2 as short tables, the paper's beside ours."""
+
+from collections.abc import Mapping
+
+import pandas as pd
+
+from placing.methods import JOINT_NAMES
+from placing.metrics import AVERAGE
+from placing.report import row_of, with_error
+from placing.robot_plans import CONSTRAINTS, INSIDE, WITH, WITHOUT
+from placing.table1 import MEASURE_OF
+from placing.table1_page import DIGITS, recomputed
+from placing.table2_page import paper_table
+
+TABLE1_HEADS = [
+    *("data set", "task", "error [m]", *(f"`{name}`" for name in CONSTRAINTS)),
+    *("placed, `with` and `inside` [%]", "*paper, `without`*", "*paper, `with`*"),
+]
+TABLE2_HEADS = ["method", "`Co` [%]", "`Sc`", "*paper, `Co` [%]*", "*paper, `Sc`*"]
+
+
+def table1_averages(longs: Mapping[str, pd.DataFrame], paper: pd.DataFrame) -> str:
+    """Return the averages of Table 1 of every data set, by its long table."""
+    said = paper[paper["source"] == "Table 1"]
+    lines = [row_of(TABLE1_HEADS), "|:-|:-|:-|" + "-:|" * 6]
+    for dataset, long in longs.items():
+        rows = long[long["category"] == AVERAGE]
+        rows = rows.set_index(["task", "metric", "constraints"])
+        for task in dict.fromkeys(long["task"]):
+            for metric, measure in MEASURE_OF.items():
+                found = [rows.loc[(task, metric, name)] for name in CONSTRAINTS]
+                cells = [f"`{dataset}`", f"`{task}`", measure]
+                digits = DIGITS[metric]
+                cells += [with_error(row["value"], row["se"], digits) for row in found]
+                placed = [
+                    f"{rows.loc[(task, 'placed_percent', name)]['value']:.0f}"
+                    for name in (WITH, INSIDE)
+                ]
+                theirs = [recomputed(said, task, metric, n) for n in (WITHOUT, WITH)]
+                published = [f"{value:.{digits}f}" for value in theirs]
+                lines.append(row_of([*cells, ", ".join(placed), *published]))
+    return "\n".join(lines)
+
+
+def table2_averages(table2: pd.DataFrame, paper: pd.DataFrame) -> str:
+    """Return the averages of Table 2 by method: measured, and the paper's raters'."""
+    lines = [row_of(TABLE2_HEADS), "|:-|" + "-:|" * 4]
+    ours, theirs = (t.set_index("method") for t in (table2, paper_table(paper)))
+    for method, name in JOINT_NAMES.items():
+        cells = [
+            f"{table.loc[method, f'average_{score}']:.{digits}f}"
+            for table in (ours, theirs)
+            for score, digits in (("co", 0), ("sc", 1))
+        ]
+        lines.append(row_of([name, *cells]))
+    return "\n".join(lines)
