@@ -103,10 +103,15 @@ def moments(film: Film, object_id: str) -> tuple[Moment, ...]:
     number = film.objects.index(object_id)
     held = np.flatnonzero(film.held == number)
     phases = np.array(film.phase)
-    drive, lower, retreat = (
-        np.flatnonzero((film.moving == number) & (phases == f"put {name}"))
-        for name in ("drive", "lower", "retreat")
-    )
+    last, end = int(held[-1]), len(film.time_s) - 1
+
+    def during(name: str, otherwise: int) -> NDArray[np.int64]:
+        """Return the frames of a phase, which may be too short to have one."""
+        found = np.flatnonzero((film.moving == number) & (phases == f"put {name}"))
+        return found if len(found) else np.array([otherwise])
+
+    drive, lower = during("drive", last), during("lower", last)
+    retreat = during("retreat", min(last + 1, end))
     found = [Moment("start", 0, True)]
     if np.isfinite(film.T_world_objects[held[0] - 1, number]).all() and held[0] > 0:
         found.append(Moment(f"pick {object_id}", int(held[0]), False))
@@ -115,7 +120,7 @@ def moments(film: Film, object_id: str) -> tuple[Moment, ...]:
         Moment("carry", int(drive[len(drive) * 3 // 5]), False),
         Moment("lower", int(lower[0]), False),
         Moment("let go", int(retreat[-1]), False),
-        Moment("end", len(film.time_s) - 1, True),
+        Moment("end", end, True),
     )
 
 

@@ -18,6 +18,7 @@ from placing.robot.paths import Query
 from placing.robot.planning import (
     GOAL_HIT,
     NO_ARM,
+    NO_PATH,
     NO_PLACE,
     REASONS,
     TOO_WIDE,
@@ -79,6 +80,7 @@ def goals_of(
     if not len(bases):
         return
     search.reached(NO_ARM)
+    stand = Standing(search, floor, carrying)
     for grasp, held in search.grasps:
         release_m = grasp.release_m if search.is_putting else 0.0
         T_let_go = search.T_world_object + np.array([0, 0, 0, 0, 0, 0, release_m])
@@ -87,7 +89,7 @@ def goals_of(
             continue
         n_left = config.n_goals
         for q in free_goals(search, bases, T_world_tool, held, config):
-            carry = carried_to(search.without, floor, carrying, held, q)
+            carry = stand.carried_to(q, held)
             if carry is None:
                 continue
             down = straight_down(search.without, q, held, config)
@@ -126,15 +128,43 @@ def is_hand_free(
     return False
 
 
-def carried_to(
-    checker: SceneChecker, floor: Floor, carrying: Carrying, held: Held, q: Array
-) -> Array | None:
-    """Return the first arm (a,) that carries an object to the base pose of `q`."""
-    arms = carrying.arms_for(held)
-    rows = np.repeat(floor.configurations(q[:3]), len(arms), axis=0)
-    rows[:, 4:] = arms
-    is_free = checker.are_free(rows, held)
-    return arms[is_free.argmax()] if is_free.any() else None
+class Standing:
+    """How the torso goes up and down at the base poses of one search, remembered."""
+
+    def __init__(self, search: Search, floor: Floor, carrying: Carrying) -> None:
+        """Remember nothing yet."""
+        self.search, self.floor, self.carrying = search, floor, carrying
+        self._folds: dict[bytes, bool] = {}
+        self._carries: dict[tuple[bytes, int], Array | None] = {}
+
+    def carried_to(self, q: Array, held: Held) -> Array | None:
+        """Return the first arm (a,) that carries an object to base and torso of `q`.
+
+        There is none where the folded arm could not go up or down there either.
+        """
+        place = q[:4].tobytes()
+        if place not in self._folds:
+            stow = np.asarray(self.search.among.model.settings.stow)
+            self._folds[place] = self._rises(self.search.among, q, stow, None)
+        if not self._folds[place]:
+            self.search.reached(NO_PATH)
+            return None
+        key = place, id(held)
+        if key not in self._carries:
+            arms = self.carrying.arms_for(held)
+            checker = self.search.without
+            free = (arm for arm in arms if self._rises(checker, q, arm, held))
+            self._carries[key] = next(free, None)
+            if self._carries[key] is None:
+                self.search.reached(NO_PATH)
+        return self._carries[key]
+
+    def _rises(
+        self, checker: SceneChecker, q: Array, arm: Array, held: Held | None
+    ) -> bool:
+        """Return whether the torso is free from below up to its height in `q`."""
+        low = self.floor.configurations(q[:3], arm=arm)[0]
+        return checker.is_edge_free(low, np.concatenate([q[:4], arm]), held)
 
 
 def free_goals(
