@@ -16,6 +16,7 @@ TABLE1_HEADS = [
     *("data set", "task", "error [m]", *(f"`{name}`" for name in CONSTRAINTS)),
     *("placed, `with` and `inside` [%]", "*paper, `without`*", "*paper, `with`*"),
 ]
+EXECUTION_HEADS = ["scenario", "placed", "largest error [mm]", "largest error [deg]"]
 TABLE2_HEADS = ["method", "`Co` [%]", "`Sc`", "*paper, `Co` [%]*", "*paper, `Sc`*"]
 
 
@@ -39,6 +40,19 @@ def table1_averages(longs: Mapping[str, pd.DataFrame], paper: pd.DataFrame) -> s
                 theirs = [recomputed(said, task, metric, n) for n in (WITHOUT, WITH)]
                 published = [f"{value:.{digits}f}" for value in theirs]
                 lines.append(row_of([*cells, ", ".join(placed), *published]))
+    return "\n".join(lines)
+
+
+def execution_summary(executed: pd.DataFrame) -> str:
+    """Return how many objects of each scenario came to rest where they were planned."""
+    lines = [row_of([*EXECUTION_HEADS, "not placed"]), "|:-|-:|-:|-:|:-|"]
+    for scenario, rows in executed.groupby("scenario"):
+        placed, others = rows[rows["placed"]], rows[~rows["placed"]]
+        said = [f"{r['object']}: {r['reason']}" for r in others.to_dict("records")]
+        error_mm = 1000 * placed["error_m"].max()
+        cells = [str(scenario), f"{len(placed)} of {len(rows)}", f"{error_mm:.1f}"]
+        cells += [f"{placed['error_deg'].max():.1f}", "; ".join(said)]
+        lines.append(row_of(cells))
     return "\n".join(lines)
 
 

@@ -6,7 +6,11 @@ import pandas as pd
 import pytest
 
 from placing.metrics import AVERAGE
-from placing.readme_tables import table1_averages, table2_averages
+from placing.readme_tables import (
+    execution_summary,
+    table1_averages,
+    table2_averages,
+)
 
 PAPER = pd.read_csv(Path(__file__).parents[2] / "config" / "paper.csv")
 
@@ -56,3 +60,18 @@ def test_table_2_has_our_averages_and_those_of_the_raters_of_the_paper():
     assert found["human context (DP)"][:2] == ["73", "1.2"]
     assert found["object context"] == ["88", "2.1", "85", "3.7"]
     assert len(found) == 4
+
+
+def test_scenarios_say_what_was_placed_how_well_and_what_was_not():
+    executed = pd.DataFrame(
+        {
+            "scenario": ["kitchen"] * 3,
+            "object": ["cup", "shoe", "can"],
+            "error_m": [0.001, 0.002, None],
+            "error_deg": [0.5, 0.1, None],
+            "placed": [True, True, False],
+            "reason": ["", "", "no path"],
+        }
+    )
+    (line,) = execution_summary(executed).splitlines()[2:]
+    assert cells(line) == ["kitchen", "2 of 3", "2.0", "0.5", "can: no path"]

@@ -198,7 +198,8 @@ def leaves():
 
 
 LEAVES_OF_SCENARIOS = ["tables/execution.csv", "checks/certificates.csv"]
-LEAVES_OF_SCENARIOS += ["pictures/rooms.png"]
+LEAVES_OF_SCENARIOS += ["pictures/rooms.png", "recordings"]
+LEAVES_OF_SCENARIOS += [f"pictures/{scene}.png" for scene in SCENARIO_SCENES]
 
 
 def leaves_of_scans():

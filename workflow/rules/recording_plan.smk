@@ -16,12 +16,8 @@ OUTPUTS
     results/scenarios/pictures/{scenario}.png                what the robot does
 """
 
-SCENARIOS = sorted(path.stem for path in Path("resources/scenarios").glob("*.yaml"))
-"""The scenarios of Section 4.3."""
-
-
 wildcard_constraints:
-    scenario="|".join(SCENARIOS),
+    scenario="|".join(SCENARIO_SCENES),
 
 
 rule record_plan:
@@ -74,7 +70,7 @@ rule record_scenarios:
         plans="results/scenarios/plans/fold0.parquet",
         tried="results/scenarios/tried/fold0.parquet",
         certificates="results/scenarios/certificates/fold0",
-        films=expand("results/scenarios/executions/{scene}.npz", scene=SCENARIOS),
+        films=expand("results/scenarios/executions/{scene}.npz", scene=SCENARIO_SCENES),
         robot="config/robots/pr2.yaml",
         robot_schema="workflow/schemas/robot.schema.yaml",
     output:

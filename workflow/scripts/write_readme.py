@@ -6,7 +6,11 @@ from pathlib import Path
 import pandas as pd
 
 from command import run
-from placing.readme_tables import table1_averages, table2_averages
+from placing.readme_tables import (
+    execution_summary,
+    table1_averages,
+    table2_averages,
+)
 from placing.report import averages_by_task, write_text
 
 
@@ -14,6 +18,7 @@ def main(
     figure6: tuple[Path, ...],
     table1: tuple[Path, ...],
     table2: Path,
+    execution: Path,
     paper: Path,
     readme: Path,
 ) -> None:
@@ -23,6 +28,7 @@ def main(
         figure6: Tables of Figure 6, one per data set.
         table1: Long tables of Table 1, results/{dataset}/tables/table1_long.csv.
         table2: Table 2.
+        execution: Where the objects of the scenarios came to rest.
         paper: Numbers of the paper.
         readme: File whose parts between markers such as `<!-- figure6 -->` are
             replaced.
@@ -32,6 +38,7 @@ def main(
     parts = {
         "figure6": averages_by_task(pd.concat([pd.read_csv(path) for path in figure6])),
         "table1": table1_averages(longs, published),
+        "execution": execution_summary(pd.read_csv(execution)),
         "table2": table2_averages(pd.read_csv(table2), published),
     }
     text = readme.read_text()
