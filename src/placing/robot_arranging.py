@@ -35,6 +35,8 @@ class RobotPlacingConfig:
 
     n_arranged: int
     """Modes that are arranged without regard to the robot, and then filtered."""
+    n_labels: int
+    """Labelled arrangements that fill a scene, the first ones by name."""
     max_calls: int
     """How often feasibility is asked."""
     max_steps: int

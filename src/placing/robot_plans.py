@@ -44,10 +44,15 @@ TRIED_COLUMNS = (
 """One row per time that the robot was asked, in order; names joined by `+`."""
 
 
-def asked_of_robot(scene: Scene, task: str) -> list[Question]:
-    """Return the questions of a task with an object that the robot can carry."""
+def asked_of_robot(scene: Scene, task: str, n_labels: int) -> list[Question]:
+    """Return the questions of a task with an object that the robot can carry.
+
+    In a filled scene those about its first `n_labels` labelled arrangements.
+    """
     # ASSUME: what the robot cannot carry is brought into an empty scene later.
-    every = questions(scene, task)
+    labels = sorted(arrangement.name for arrangement in scene.arrangements)
+    known = {"", *labels[:n_labels]}
+    every = [q for q in questions(scene, task) if q.labels in known]
     return [q for q in every if any(item.is_movable for item in q.wanted)]
 
 
@@ -153,7 +158,7 @@ class Planned:
 
     def _add(self, scene: Scene, task: str, put: Put) -> None:
         """Let the robot answer the questions of a task about a scene."""
-        for question in asked_of_robot(scene, task):
+        for question in asked_of_robot(scene, task, self._config.n_labels):
             key = scene.scene, task, question.name
             options = self._options.get(key, self._none)
             args = options, put, self._min_distance_m, self._config

@@ -47,7 +47,9 @@ def score_constraints(
     `without` are the answers of `dp`, `plans` what the robot does.
     """
     movable = [item.object_id for item in scene.objects if item.is_movable]
-    answers = without[without["object"].isin(movable)].assign(method=WITHOUT)
+    is_asked = without["question"].isin(plans["question"])
+    answers = without[is_asked & without["object"].isin(movable)]
+    answers = answers.assign(method=WITHOUT)
     robotic = plans.assign(method=plans["constraints"])
     columns = list(ANSWER_COLUMNS)
     together = pd.concat([answers[columns], robotic[columns]], ignore_index=True)

@@ -102,7 +102,14 @@ def test_an_edge_is_free_if_all_its_steps_are():
     answers = []
     for q0, q1 in pairwise(rows):
         path = np.array([q0, q1])
-        between = np.array([q for _, q in steps(path, lever_m, CONFIG.step_m)])
+        between = np.array(
+            [
+                q
+                for _, q in steps(
+                    path, pr2().tree, pr2().spheres, lever_m, CONFIG.step_m
+                )
+            ]
+        )
         answers.append(checker().is_edge_free(q0, q1))
         assert answers[-1] == checker().are_free(between).all()
     assert 5 < sum(answers) < 55
@@ -114,7 +121,12 @@ def test_nothing_moves_farther_than_a_step():
     rows = anywhere(5, 40)
     for q0, q1 in pairwise(rows):
         path = np.array([q0, q0 + 0.2 * (q1 - q0)])
-        spheres = [centres_of(q) for _, q in steps(path, levers(pr2()), CONFIG.step_m)]
+        spheres = [
+            centres_of(q)
+            for _, q in steps(
+                path, pr2().tree, pr2().spheres, levers(pr2()), CONFIG.step_m
+            )
+        ]
         moved = np.linalg.norm(np.diff(spheres, axis=0), axis=2)
         assert moved.max() <= CONFIG.step_m + 1e-9
 

@@ -41,6 +41,17 @@ def test_every_solution_brings_the_tool_where_it_is_wanted():
         assert np.all(q <= pr2().upper + 1e-9)
 
 
+def test_no_configuration_is_free_where_the_hand_alone_is_not():
+    anywhere = np.random.default_rng(3).uniform(-1, 1, (2000, 11))
+    low, high = np.maximum(pr2().lower, -3), np.minimum(pr2().upper, 3)
+    rows = (low + high) / 2 + anywhere * (high - low) / 2
+    Ts = np.array([rigid.homogeneous(tool_pose(pr2(), q)) for q in rows])
+    for touching in (False, True):
+        are_hands_free = checker().are_hands_free(Ts, None, touching)
+        assert 100 < are_hands_free.sum() < len(rows) - 100
+        assert not checker().are_free(rows, None, touching)[~are_hands_free].any()
+
+
 def test_solutions_of_different_bases_come_before_second_ones():
     _, _, rows = hands()
     ordered = best_first(rows, pr2().settings.carry)

@@ -24,7 +24,7 @@ from placing.robot_candidates import Candidate
 from placing.robot_plans import INSIDE, WITH, Planned, asked_of_robot
 from placing.scene import standing_box
 
-CONFIG = RobotPlacingConfig(n_arranged=2, max_calls=200, max_steps=200)
+CONFIG = RobotPlacingConfig(n_arranged=2, n_labels=9, max_calls=200, max_steps=200)
 SCENE = study_scene()[0]
 ITEMS = {item.object_id: item for item in SCENE.objects}
 STANDING = Standing(ITEMS, (), 0.25)
@@ -142,7 +142,7 @@ def test_random_plans_can_be_carried_out_again():
 
 
 def option_rows():
-    for question in asked_of_robot(SCENE, "filled"):
+    for question in asked_of_robot(SCENE, "filled", 9):
         for item in question.wanted:
             for option in range(3):
                 x = 2.1 - 0.3 * option - 0.05 * (item.object_id == "mouse2")
@@ -162,7 +162,7 @@ def planned():
 def test_every_wanted_object_has_a_row_under_both_constraints(planned):
     plans = planned.plans()
     plans = plans[plans["task"] == "filled"]
-    asked = asked_of_robot(SCENE, "filled")
+    asked = asked_of_robot(SCENE, "filled", 9)
     assert {q.name.split("/")[1] for q in asked} == {"mouse", "shoe"}
     n = sum(len(q.wanted) for q in asked)
     assert plans["constraints"].value_counts().to_dict() == {WITH: n, INSIDE: n}

@@ -68,6 +68,7 @@ def _arrive(
     start[4:] = arm
     drive = floor.path(low, checker, held, start)
     if drive is None:
+        search.n_paths -= 1
         return None
     # The yaw of a path is continuous: what follows has as many turns as the drive.
     turns = drive[-1, 2] - end[2]

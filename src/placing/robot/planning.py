@@ -36,7 +36,7 @@ class PlanningConfig:
     n_goals: int
     """Goals of a grasp for which a path is sought."""
     n_paths: int
-    """Paths sought for a placement in all."""
+    """Paths sought for a placement in all, with ways of the base not found."""
     n_checks: int
     """Checks of edges in one query of the path planner."""
     range_rad: float
