@@ -9,6 +9,10 @@ class BadInput(PlacingError):
     """A file, a field or a value given by a user is not what is expected."""
 
 
+class NoFloor(BadInput):
+    """A robot can stand nowhere in a scene."""
+
+
 class BadArtifact(PlacingError):
     """A file that a stage wrote is missing, damaged or of another shape."""
 

@@ -95,6 +95,13 @@ class Robotic:
     """In the order in which it was asked."""
 
 
+def put_nowhere(
+    item: SceneObject, T_world_object: Array, boxes: Mapping[str, Array]
+) -> Refusal:
+    """Return the answer of a robot that can stand nowhere in a scene."""
+    return Refusal(NO_PLACE, ())
+
+
 def arrange(
     possible: Mapping[str, Sequence[Candidate]],
     standing: Standing,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from robot_room import DOCUMENT, checker, stowed
 
-from placing.errors import BadInput
+from placing.errors import NoFloor
 from placing.robot.driving import Floor, shortened
 from placing.robot.planning import PlanningConfig
 
@@ -67,5 +67,5 @@ def test_corners_are_left_out_where_the_straight_way_is_free():
 
 def test_a_scene_without_open_floor_is_one_line():
     full = checker().with_boxes([(2.0, 1.5, 0.5, 6.0, 6.0, 1.0, 0.0)])
-    with pytest.raises(BadInput, match="room: floor: no spot where the robot pr2"):
+    with pytest.raises(NoFloor, match="room: floor: no spot where the robot pr2"):
         Floor(full, CONFIG, "room")

@@ -19,6 +19,7 @@ from placing.robot_arranging import (
     RobotPlacingConfig,
     Standing,
     arrange,
+    put_nowhere,
 )
 from placing.robot_candidates import Candidate
 from placing.robot_plans import INSIDE, WITH, Planned, asked_of_robot
@@ -172,6 +173,17 @@ def test_every_wanted_object_has_a_row_under_both_constraints(planned):
         len(planned.tried())
         == plans.drop_duplicates(["question", "constraints"])["n_calls"].sum()
     )
+
+
+def test_where_the_robot_cannot_stand_every_object_is_refused_with_that_reason():
+    options = pd.DataFrame(option_rows(), columns=list(OPTION_COLUMNS))
+    planned = Planned("rooms", options, 0.25, CONFIG)
+    planned.add(SCENE, put_nowhere)
+    plans = planned.plans()
+    offered = plans[plans["task"] == "filled"]
+    assert (plans["status"] == "refused").all()
+    assert set(offered["reason"]) == {NO_PLACE}
+    assert planned.certificates == []
 
 
 def test_plans_come_back_and_damage_is_one_line(tmp_path, planned):

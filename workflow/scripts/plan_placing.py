@@ -13,11 +13,12 @@ from placing.artifacts.options import read_options
 from placing.artifacts.plans import write_plans
 from placing.artifacts.scenes import read_scene
 from placing.clouds.ply import read_ply
+from placing.errors import NoFloor
 from placing.layouts import layout_reader
 from placing.robot.grasps import GraspSheet, read_grasps
 from placing.robot.model import load_robot
 from placing.robot.settings import RobotSettings, read_robot
-from placing.robot_arranging import RobotPlacingConfig
+from placing.robot_arranging import RobotPlacingConfig, put_nowhere
 from placing.robot_plans import Planned
 from placing.robot_scene import RobotConfig, placer_in
 from placing.rooms.file import read_yaml
@@ -69,8 +70,12 @@ def main(
         scene = read_scene(scenes / f"{name}.json")
         points = read_ply(clouds / f"{name}.ply").points
         args = read_layout(name), model, sheet, settings, seed
-        with placer_in(scene, points, *args) as placer:
-            made.add(scene, placer.put)
+        try:
+            with placer_in(scene, points, *args) as placer:
+                made.add(scene, placer.put)
+        except NoFloor as error:
+            log.warning("%s", error)
+            made.add(scene, put_nowhere)
     write_plans(plans, made.plans())
     write_table(tried, made.tried())
     write_certificates(certificates, robot[0], body.urdf, body.chain, made.certificates)

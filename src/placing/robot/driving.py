@@ -15,7 +15,7 @@ from scipy import ndimage
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
-from placing.errors import BadInput
+from placing.errors import NoFloor
 from placing.rigid import Array
 from placing.robot.checker import Held, SceneChecker
 from placing.robot.floor_lattice import Ints, grid, near, pairs, poses
@@ -36,7 +36,7 @@ class Floor:
         self.poses = poses(self.shape, self.origin_m, config)  # (n, 3)
         self.is_free = checker.are_free(self.configurations(self.poses))
         if not self.is_free.any():
-            raise BadInput(
+            raise NoFloor(
                 f"{scene}: floor: no spot where the robot {settings.robot} can stand;"
                 " expected a scan with open floor"
             )
