@@ -21,6 +21,9 @@ from placing.robot.checker import Held, SceneChecker
 from placing.robot.floor_lattice import Ints, grid, near, pairs, poses
 from placing.robot.planning import PlanningConfig
 
+N_TREES = 32
+"""Trees of ways that are kept, the last ones: each holds a megabyte or two."""
+
 
 class Floor:
     """The base poses of a scene that can be reached from its most open spot."""
@@ -132,6 +135,8 @@ class Floor:
             q = self.configurations(self.poses[self.is_free], arm=first[4:])
             is_free = self.is_free.copy()
             is_free[self.is_free] = checker.are_free(q, held)
+            if len(self._trees) >= N_TREES:
+                del self._trees[next(iter(self._trees))]
             self._trees[key] = self._tree(at, is_free)
         yield self._trees[key][1]
 
