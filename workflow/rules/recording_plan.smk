@@ -16,6 +16,7 @@ OUTPUTS
     results/scenarios/pictures/{scenario}.png                what the robot does
 """
 
+
 wildcard_constraints:
     scenario="|".join(SCENARIO_SCENES),
 
