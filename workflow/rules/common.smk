@@ -256,6 +256,16 @@ def of_pairs(path):
     ]
 
 
+def folder_of_scenarios(wildcards):
+    """Return the folder of the room files of the scenarios."""
+    return f"resources/{SCENARIOS}"
+
+
+def films_of_scenarios(wildcards):
+    """Return the folder of what was seen when the scenarios were carried out."""
+    return f"results/{SCENARIOS}/executions"
+
+
 def folder_of(wildcards):
     """Return the folder of the room files of a data set."""
     own = wildcards.dataset in (SCANS, SCENARIOS)

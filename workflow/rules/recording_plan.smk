@@ -83,7 +83,7 @@ rule record_scenarios:
         "results/benchmarks/record_scenarios.tsv"
     params:
         code=digest("record_plan"),
-        films="results/scenarios/executions",
+        films=films_of_scenarios,
         playback=flags("playback"),
     shell:
         r"""
@@ -123,7 +123,7 @@ rule picture_strip:
         "results/benchmarks/picture_strip/{scenario}.tsv"
     params:
         code=digest("picture_strip"),
-        rooms="resources/scenarios",
+        rooms=folder_of_scenarios,
     shell:
         r"""
         python workflow/scripts/picture_strip.py \

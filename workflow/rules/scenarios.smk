@@ -90,7 +90,7 @@ rule plan_scenarios:
     params:
         code=digest("plan_scenarios"),
         seed=config["seed"],
-        rooms=f"resources/{SCENARIOS}",
+        rooms=folder_of_scenarios,
         settings=flags(
             *("candidates", "sampling", "diagnostics", "arranging"),
             *("decision", "baselines"),
@@ -140,7 +140,7 @@ rule execute_scenario:
         "results/benchmarks/execute_scenario/{scene}.tsv"
     params:
         code=digest("execute_scenario"),
-        rooms=f"resources/{SCENARIOS}",
+        rooms=folder_of_scenarios,
         settings=flags("executing", "playback", "settling"),
     shell:
         r"""
