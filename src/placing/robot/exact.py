@@ -53,11 +53,19 @@ class Exact:
         self.truth.remove(item.object_id)
         return T
 
-    def falls(self, item: SceneObject, T_world_object: Array) -> bool:
-        """Return whether an object does not stay where it is let go."""
-        self.truth.put(item.object_id, self.bodies[item.object_id], T_world_object)
-        complaint = self.truth.settle(item.object_id, self.reach_m)
-        self.truth.remove(item.object_id)
+    def falls(self, item: SceneObject, T_world_object: Array, release_m: float) -> bool:
+        """Return whether an object does not stay where it is put, or let go above it.
+
+        It is let go `release_m` higher.
+        """
+        name, lifted = item.object_id, T_world_object.copy()
+        lifted[6] += release_m
+        self.truth.put(name, self.bodies[name], T_world_object)
+        complaint = self.truth.settle(name, self.reach_m)
+        if not complaint and release_m > 0:
+            self.truth.put(name, self.bodies[name], lifted)
+            complaint = self.truth.settle(name, above_m=release_m)
+        self.truth.remove(name)
         return bool(complaint)
 
     def complaint(self, motion: Motion, item: SceneObject) -> str:

@@ -168,7 +168,9 @@ class Placer:
                     segments,
                 )
                 if not self.exact.complaint(motion, item):
-                    if is_putting and self.exact.falls(item, T_world_object):
+                    release_m = goal.grasp.release_m
+                    args = item, T_world_object, release_m
+                    if is_putting and self.exact.falls(*args):
                         search.reached(FALLS)
                         break
                     return motion

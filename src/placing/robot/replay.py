@@ -155,6 +155,7 @@ class Replay:
             high = over[6] - self.certificate.T_world_object[6]
             over[6] -= np.clip(high, 0.0, self.config.drop_m)
             self._check_pose(segment, over, self.certificate.T_world_object)
+            self._move(over)  # it drops at once
         else:
             self.puppet.pose(segment.path[0], segment.opening_m)
             self._carry()
@@ -176,7 +177,10 @@ class Replay:
 
     def _carry(self) -> None:
         """Move the object with the gripper."""
-        T = rigid.compose(self.puppet.tool(), self.certificate.T_tool_object)
+        self._move(rigid.compose(self.puppet.tool(), self.certificate.T_tool_object))
+
+    def _move(self, T: Array) -> None:
+        """Put the object at a pose in the world."""
         self.T_world_item = T
         w, x, y, z = T[:4]
         centre = rigid.apply(T, self.body.mass_centre_m[None])[0]

@@ -9,6 +9,7 @@ import math
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -197,16 +198,18 @@ class Truth:
         self._standing[object_id] = (i, body, T)
         return T
 
-    def settle(self, object_id: str, reach_m: float = 0.0) -> str:
+    def settle(self, object_id: str, reach_m: float = 0.0, above_m: float = 0.0) -> str:
         """Return why an object does not stay where it stands; empty if it stays.
 
         It is let go among the furniture and all else that stands; `reach_m` as in
-        `physics.settling.settle`. The world of the exact check is left as it is.
+        `physics.settling.settle`. By `above_m` it may drop beside what it may move. The
+        world of the exact check is left as it is.
         """
         bodies = {k: (body, T) for k, (_, body, T) in self._standing.items()}
         near = _near(bodies, object_id, self._settling.near_m)
         settled = settle(self._pieces, near, self._settling, reach_m)
-        return unrest(settled[object_id], self._settling)
+        most_m = self._settling.max_moved_m + above_m
+        return unrest(settled[object_id], replace(self._settling, max_moved_m=most_m))
 
     def _set(self, q: Array) -> None:
         """Move the robot to a configuration."""
