@@ -105,8 +105,7 @@ class Asked:
         """Return a density without places that fit no object of a category, (p,)."""
         items = self.question.of_category(category)
         allowed = np.any([self.allowed[item.object_id] for item in items], axis=0)
-        left = np.where(allowed, density, 0.0)
-        return left / max(left.sum(), 1e-300)  # guards a scene without such a place
+        return only_on(allowed, density)
 
     def people(self, rng: Generator, method: str) -> People | None:
         """Return who uses the wanted objects; None without humans or a valid pose."""
@@ -200,6 +199,12 @@ class Asked:
         else:
             is_known = method != "object" or category in learned.relations.pairs
         return "" if is_known else NO_EXAMPLE
+
+
+def only_on(allowed: NDArray[np.bool_], density: Array) -> Array:
+    """Return a density on the allowed places only, (p,), sum 1."""
+    left = np.where(allowed, density, 0.0)
+    return left / max(left.sum(), 1e-300)  # guards an object that fits nowhere
 
 
 _MIXED = ("dp", "object")

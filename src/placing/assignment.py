@@ -21,7 +21,6 @@ from placing.options import Options
 from placing.search import Search
 from placing.stacking import StackPair, find_arcs
 
-Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 

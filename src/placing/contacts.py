@@ -10,6 +10,7 @@ Letters for shapes: c placements, f features.
 import numpy as np
 from numpy.typing import NDArray
 
+from placing import rigid
 from placing.contact_kernels import PLACED_FEATURES, measure, rest
 from placing.object_clouds import ObjectCloud
 from placing.object_grids import (
@@ -69,12 +70,5 @@ def stability_features(
         T,
         np.ascontiguousarray(area_height_m, float),
     )
-    own = shape_features(object_cloud, _up_in_object(T[:, :4]))
+    own = shape_features(object_cloud, rigid.upward(T[:, :4]))
     return np.concatenate([placed, own], axis=1).astype(np.float32)
-
-
-def _up_in_object(quaternion: Array) -> Array:
-    """Return the world's z axis in the object's frame, shape (c, 3)."""
-    w, x, y, z = quaternion.T
-    up = [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]
-    return np.stack(up, axis=1)

@@ -38,8 +38,6 @@ METHODS = {
     LABELS: ("spread of labels", "black"),
 }
 """Name in the legend and colour of each method, in the order of the bars."""
-PALETTE = {method: colour for method, (_, colour) in METHODS.items()}
-"""Colour of each method in every figure."""
 
 PANELS = (
     ("location_m", "location_se_m", "location error [m]"),

@@ -86,8 +86,9 @@ def _kappa_of(length: float) -> float:
     """Return kappa from the mean resultant length of angles.
 
     SOURCE: the start is that of Best and Fisher (1981), "The bias of the maximum
-    likelihood estimators of the von Mises-Fisher concentration parameters"; three steps
-    of Newton on I1(kappa) / I0(kappa) = length make it exact.
+    likelihood estimators of the von Mises-Fisher concentration parameters",
+    Communications in Statistics - Simulation and Computation 10(5), 493-502; three
+    steps of Newton on I1(kappa) / I0(kappa) = length make it exact.
     """
     r = length
     if r < 0.53:

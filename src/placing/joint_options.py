@@ -13,7 +13,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from placing.answering import Asked
+from placing import rigid
+from placing.answering import Asked, only_on
 from placing.elbow_room import has_room
 from placing.options import Options, thin_options
 from placing.psi_object import PsiObject, box_of
@@ -77,7 +78,7 @@ def densities_of(
     found = {}
     for method in HUMAN:
         density, smooth = asked.density(asked.stream(method), method, item.category)
-        found[method] = _on(allowed, density), _on(allowed, smooth)
+        found[method] = only_on(allowed, density), only_on(allowed, smooth)
     density = psi.density(item, allowed, model.yaws)
     return found | {"object_context": (density, density)}
 
@@ -134,12 +135,6 @@ def together(parts: list[Proposals]) -> Proposals:
     return Proposals(**{name: np.concatenate(c) for name, c in columns.items()})
 
 
-def _on(allowed: NDArray[np.bool_], density: Array) -> Array:
-    """Return a density on the allowed places only, (p,), sum 1."""
-    left = np.where(allowed, density, 0.0)
-    return left / max(left.sum(), 1e-300)  # guards an object that fits nowhere
-
-
 def _likely(
     location: Array,
     item: SceneObject,
@@ -191,8 +186,6 @@ def _boxes(
     """
     centre = np.array([middle for middle, _ in boxes])[orientation]  # (k, y, 3)
     size = np.array([extent for _, extent in boxes])[orientation]
-    cos, sin = np.cos(yaws), np.sin(yaws)
-    x, y, z = np.moveaxis(centre, 2, 0)
-    turned = np.stack([cos * x - sin * y, sin * x + cos * y, z], -1)
+    turned = rigid.turn_about_z(yaws, centre)
     yaw = np.broadcast_to(yaws, orientation.shape)[..., None]
     return np.concatenate([T[..., 4:] + turned, size, yaw], axis=2)

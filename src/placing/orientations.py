@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from placing.object_clouds import ObjectCloud
 
 HUNG = "hung"
-UPSIDE_DOWN = (0.0, 1.0, 0.0, 0.0)
-"""Quaternion of half a turn about x."""
 ALIKE_M = 0.006
 """Guards the comparison of two ways to lie against the spacing of the cloud."""
 N_BANDS = 16
@@ -66,7 +64,7 @@ def orientations(
     if is_thin(cloud, config):
         found.append(Orientation("edge", np.array(rigid.ON_EDGE)))
     if stem_below(cloud, config) is not None:
-        found.append(Orientation(HUNG, np.array(UPSIDE_DOWN)))
+        found.append(Orientation(HUNG, np.array(rigid.UPSIDE_DOWN)))
     leaning = list(_leaning(cloud, config))
     n_faces = min(config.n_faces, config.n_most - len(found) - len(leaning))
     found += _faces(cloud, [o.quaternion for o in found], n_faces, config)
@@ -89,14 +87,13 @@ def _leaning(cloud: "ObjectCloud", config: OrientationsConfig) -> Iterator[Orien
     x, y, z = extents_of(cloud)
     is_tall = max(x, z) > min(x, y) / config.max_thinness
     if is_thin(cloud, config):
-        start, axis = np.array(rigid.ON_EDGE), np.array([1.0, 0.0, 0.0])
+        start, axis = np.array(rigid.ON_EDGE), (1.0, 0.0, 0.0)
     elif is_tall:
-        start, axis = np.array(rigid.IDENTITY), np.array([0.0, 1.0, 0.0])
+        start, axis = np.array(rigid.IDENTITY), (0.0, 1.0, 0.0)
     else:
         return
     for i, degrees in enumerate(config.lean_deg):
-        half = np.deg2rad(degrees) / 2
-        tilt = np.concatenate([[np.cos(half)], np.sin(half) * axis])
+        tilt = rigid.about(axis, np.deg2rad(degrees))
         yield Orientation(f"lean{i + 1}", rigid.multiply(tilt, start))
 
 
@@ -109,7 +106,7 @@ def _faces(
     for normal in _stable_normals(cloud, config):
         if len(found) >= n_most:
             break
-        quaternion = turn_down(normal)
+        quaternion = rigid.turn_down(normal)
         shape = _silhouette(cloud, quaternion)
         if all(np.abs(shape - other).max() > ALIKE_M for other in shapes):
             shapes.append(shape)
@@ -160,7 +157,7 @@ def tipping_deg(cloud: "ObjectCloud", normal: Array) -> float:
 
     Below 0 it tips on level ground.
     """
-    R = rigid.matrix(turn_down(normal))
+    R = rigid.matrix(rigid.turn_down(normal))
     points, centre = cloud.points @ R.T, R @ cloud.mass_centre
     low = points[:, 2].min()
     # ASSUME: what is within a few millimetres of the ground touches it.
@@ -170,14 +167,6 @@ def tipping_deg(cloud: "ObjectCloud", normal: Array) -> float:
     lines = ConvexHull(base).equations  # (e, 3), negative inside
     inside = -(lines[:, :2] @ centre[:2] + lines[:, 2]).max()
     return float(np.rad2deg(np.arctan2(inside, centre[2] - low)))
-
-
-def turn_down(normal: Array) -> Array:
-    """Return the smallest rotation that turns a unit vector to -z, shape (4,)."""
-    axis = np.cross(normal, [0.0, 0.0, -1.0])
-    quaternion = np.concatenate([[1.0 - normal[2]], axis])
-    length = np.linalg.norm(quaternion)
-    return np.array(UPSIDE_DOWN) if length < 1e-6 else quaternion / length
 
 
 def stem_below(cloud: "ObjectCloud", config: OrientationsConfig) -> float | None:

@@ -59,11 +59,6 @@ def log_psi_human(
     return logs
 
 
-def log_psi_loc(theta: Theta, objects: Array, poses: Array) -> NDArray[np.float32]:
-    """Return log Psi_loc of each object with each pose, shape (n, q)."""
-    return log_psi_human(theta, objects, np.zeros(len(objects), np.bool_), poses)
-
-
 def log_factors(theta: Theta, location: Array, reference: Array) -> Array:
     """Return the logs of Psi_dist, Psi_rel and Psi_height, shape (3,).
 

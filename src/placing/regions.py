@@ -48,30 +48,6 @@ def calibrate(ranks: Array, levels: Sequence[float] | Array) -> Array:
     return ordered[np.clip(number, 1, len(ordered)) - 1]
 
 
-def all_ranks(density: Array) -> Array:
-    """Return the rank of every place, shape (p,)."""
-    values = np.asarray(density, float)
-    order = np.argsort(-values, kind="stable")
-    falling = values[order]
-    mass = np.cumsum(falling)
-    # The last one of equal densities has the rank of all of them.
-    last = np.searchsorted(-falling, -falling, side="right") - 1
-    ranks = np.empty(len(values))
-    ranks[order] = mass[last] / max(mass[-1], 1e-300)
-    return np.clip(ranks, 0, 1)
-
-
-def region(density: Array, threshold: float) -> NDArray[np.bool_]:
-    """Return the places whose rank is at most `threshold`, shape (p,).
-
-    These are the densest places. The region of 1 is the whole set; that of a rank
-    below that of the densest place is empty, as coverage counts it.
-    """
-    if threshold >= 1:
-        return np.ones(len(density), bool)
-    return all_ranks(density) <= threshold + TOLERANCE
-
-
 def region_areas(density: Array, thresholds: Array, spacing_m: float) -> Array:
     """Return the area of the region of each threshold, shape (l,), in m²."""
     falling = np.sort(np.asarray(density, float))[::-1]

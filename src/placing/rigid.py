@@ -1,9 +1,11 @@
-"""Rigid motions: the only place with rotation formulas.
+"""Rigid motions: the only place with rotation formulas, but for compiled kernels.
 
 A pose `T_a_b` is (7,) = quaternion wxyz + translation xyz [m] and maps coordinates
 of frame b to frame a; adjacent names cancel in a product. Frames are right-handed
 with z up; yaw is the angle about z from x towards y, in radians.
 """
+
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +15,9 @@ Array = NDArray[np.float64]
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
 ON_EDGE = (0.5, 0.5, -0.5, 0.5)
 """Quaternion of the stance `edge`: x turns up, z points to -y, y points to -x."""
+
+UPSIDE_DOWN = (0.0, 1.0, 0.0, 0.0)
+"""Quaternion of half a turn about x."""
 
 STANCES = {"upright": IDENTITY, "edge": ON_EDGE}
 """How an object rests before it is turned about the vertical."""
@@ -28,6 +33,29 @@ def yaw_quaternion(yaw: float) -> Array:
     return np.array([np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2)])
 
 
+def about(axis: Array | tuple[float, float, float], angle: float) -> Array:
+    """Return the rotation by `angle` [rad] about a unit axis, wxyz, shape (4,)."""
+    half = angle / 2
+    return np.concatenate([[np.cos(half)], np.sin(half) * np.asarray(axis, float)])
+
+
+def turn_down(direction: Array) -> Array:
+    """Return the smallest rotation that turns a unit vector to -z, wxyz, shape (4,)."""
+    axis = np.cross(direction, [0.0, 0.0, -1.0])
+    quaternion = np.concatenate([[1.0 - direction[2]], axis])
+    length = np.linalg.norm(quaternion)
+    return np.array(UPSIDE_DOWN) if length < 1e-6 else quaternion / length
+
+
+def turn_up(direction: Array) -> Array:
+    """Return the smallest rotation that turns a unit vector to z, shape (3, 3)."""
+    x, y, z = direction
+    if z < -1 + 1e-12:  # Opposite to z the smallest rotation is not unique.
+        return np.diag([1.0, -1.0, -1.0])
+    skew = np.array([[0.0, 0.0, -x], [0.0, 0.0, -y], [x, y, 0.0]])
+    return np.eye(3) + skew + skew @ skew / (1 + z)
+
+
 def yaw_of(quaternion: Array) -> Array:
     """Return the heading of the turned x axis on the floor, shape (...,) [rad].
 
@@ -40,6 +68,13 @@ def yaw_of(quaternion: Array) -> Array:
     is_upright = np.hypot(*along_x) < 0.5
     heading = np.where(is_upright, -along_y, along_x)
     return np.arctan2(heading[1], heading[0])
+
+
+def upward(quaternion: Array) -> Array:
+    """Return the z axis of the world as the turned frame sees it, shape (..., 3)."""
+    w, x, y, z = np.moveaxis(np.asarray(quaternion, float), -1, 0)
+    up = [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]
+    return np.stack(up, axis=-1)
 
 
 def matrix(quaternion: Array) -> Array:
@@ -59,6 +94,23 @@ def homogeneous(T_a_b: Array) -> Array:
     T = np.eye(4)
     T[:3, :3], T[:3, 3] = matrix(T_a_b[:4]), T_a_b[4:]
     return T
+
+
+def from_homogeneous(T: Array) -> Array:
+    """Return the pose of a homogeneous matrix, its w not negative, shape (7,)."""
+    (a, b, c, x), (d, e, f, y), (g, h, i, z) = T[:3].tolist()
+    # SOURCE: Shepperd's method; the largest of the four is found first, w if positive.
+    squares = (1 + a + e + i, 1 + a - e - i, 1 - a + e - i, 1 - a - e + i)
+    rows = (
+        (squares[0], h - f, c - g, d - b),
+        (h - f, squares[1], b + d, c + g),
+        (c - g, b + d, squares[2], f + h),
+        (d - b, c + g, f + h, squares[3]),
+    )
+    row = rows[max(range(4), key=squares.__getitem__)]
+    sign = -1.0 if row[0] < 0 else 1.0
+    scale = sign / math.sqrt(sum(value * value for value in row))
+    return np.array([*(scale * value for value in row), x, y, z])
 
 
 def multiply(p: Array, q: Array) -> Array:
@@ -83,6 +135,14 @@ def inverse(T_a_b: Array) -> Array:
     return np.concatenate([conjugate, -matrix(conjugate) @ T_a_b[4:]])
 
 
+def turn_about_z(yaw: Array, vectors: Array) -> Array:
+    """Return vectors (..., 2) or (..., 3) turned by yaws (...) that broadcast [rad]."""
+    cos, sin = np.cos(yaw), np.sin(yaw)
+    x, y, *z = np.moveaxis(np.asarray(vectors, float), -1, 0)
+    turned = np.broadcast_arrays(cos * x - sin * y, sin * x + cos * y, *z)
+    return np.stack(turned, axis=-1)
+
+
 def apply(T_a_b: Array, points_b: Array) -> Array:
     """Return points of frame b in frame a, shape (n, 3)."""
     return points_b @ matrix(T_a_b[:4]).T + T_a_b[4:]
@@ -91,3 +151,8 @@ def apply(T_a_b: Array, points_b: Array) -> Array:
 def wrap(angle: Array) -> Array:
     """Return the angle in [-pi, pi), same shape [rad]."""
     return (np.asarray(angle) + np.pi) % (2 * np.pi) - np.pi
+
+
+def near(angle: Array, other: Array) -> Array:
+    """Return angles turned by whole turns to within half a turn of others [rad]."""
+    return other + wrap(angle - other)

@@ -2,7 +2,10 @@
 
 First what it cannot put anywhere is left out, each object alone among what stands
 there; then an order is sought for the others, and where there is none, objects in
-conflict are left out. Whether a step is feasible is for the robot to say.
+conflict are left out. Whether a step is feasible is for the robot to say: as planned
+while an order is sought, as checked among the true furniture for every step of an
+order that was found. What that check does not accept is ruled out, and an order is
+sought again.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -16,17 +19,27 @@ from placing.overlap import overlaps
 from placing.placing_order import Verdict
 from placing.robot.planning import NO_PLACE, Motion, Refusal
 from placing.robot_candidates import Candidate
-from placing.scene import Placement, SceneObject, standing_box
+from placing.scene import Placement, SceneObject, standing_at, standing_box
 from placing.try_place import Found, Limits, place_most
 
 Array = NDArray[np.float64]
 Put = Callable[[SceneObject, Array, Mapping[str, Array]], Motion | Refusal]
-"""Plans to put an object at a pose (7,), with the boxes (7,) of what stands there."""
+"""Puts an object at a pose (7,), with the boxes (7,) of what stands there."""
 
 NO_OPTION = "no place fits"
 IN_CONFLICT = "in conflict with other objects"
 LIMIT = "limit of the search"
 """Reasons for leaving out an object beside those of the robot."""
+
+
+@dataclass(frozen=True)
+class Robot:
+    """What a robot says about putting an object somewhere."""
+
+    plan: Put
+    """Among the points of the scan."""
+    carry_out: Put
+    """Among the true furniture, which takes longer."""
 
 
 @dataclass(frozen=True)
@@ -102,32 +115,32 @@ def put_nowhere(
     return Refusal(NO_PLACE, ())
 
 
+NOWHERE = Robot(put_nowhere, put_nowhere)
+"""A robot that can stand nowhere in a scene."""
+
+
 def arrange(
     possible: Mapping[str, Sequence[Candidate]],
     standing: Standing,
-    put: Put,
+    robot: Robot,
     config: RobotPlacingConfig,
 ) -> Robotic:
     """Return what the robot places where and in which order.
 
     `possible` holds the candidates of every wanted object, best first.
     """
-    asking = Asking(standing, put)
+    asking = Asking(standing, robot)
     exclusive = Exclusion(standing, possible)
-    refused, left = {}, {}
-    for name, candidates in possible.items():
-        survivors, reason = asking.survivors(candidates)
-        if survivors:
-            left[name] = survivors
-        else:
-            refused[name] = reason
-    worth = {name: candidates[0].log_score for name, candidates in left.items()}
-    found, dropped = place_most(
-        left, asking.feasible, config.limits, worth, exclusive=exclusive
-    )
-    refused |= _left_out(left, found, dropped)
-    steps = asking.steps(found.order)
-    return Robotic(steps, refused, asking.n_calls, tuple(asking.tried))
+    while True:
+        left, refused = asking.split(possible)
+        worth = {name: candidates[0].log_score for name, candidates in left.items()}
+        found, dropped = place_most(
+            left, asking.feasible, config.limits, worth, exclusive=exclusive
+        )
+        steps = asking.carried_out(found.order)
+        if steps is not None:
+            refused |= _left_out(left, found, dropped)
+            return Robotic(steps, refused, asking.n_calls, tuple(asking.tried))
 
 
 def _left_out(
@@ -144,19 +157,37 @@ def _left_out(
     }
 
 
-class Asking:
-    """Asks the robot, and keeps the motions it answers with."""
+Placed = tuple[Candidate, frozenset[Candidate]]
+"""One more placement, and those before it."""
+NOTHING: frozenset[Candidate] = frozenset()
 
-    def __init__(self, standing: Standing, put: Put) -> None:
+
+class Asking:
+    """Asks the robot, and keeps what it answers."""
+
+    def __init__(self, standing: Standing, robot: Robot) -> None:
         """Put what is given where it stands."""
         self.n_calls = 0
         self.tried: list[Tried] = []
-        self._standing, self._put = standing, put
+        self._standing, self._robot = standing, robot
         self._given = {p.object_id: self._box(p) for p in standing.given}
-        self._placed: dict[Candidate, Array] = {}
         self._alone: dict[Candidate, Motion | Refusal] = {}
         self._out_of_reach: dict[tuple[str, int], Refusal] = {}
-        self._motions: dict[tuple[Candidate, frozenset[Candidate]], Motion] = {}
+        self._planned: dict[Placed, Motion | Refusal] = {}
+        self._carried_out: dict[Placed, Motion] = {}
+
+    def split(
+        self, possible: Mapping[str, Sequence[Candidate]]
+    ) -> tuple[dict[str, list[Candidate]], dict[str, str]]:
+        """Return the candidates of objects that can be put alone, else the reasons."""
+        left, refused = {}, {}
+        for name, candidates in possible.items():
+            survivors, reason = self.survivors(candidates)
+            if survivors:
+                left[name] = survivors
+            else:
+                refused[name] = reason
+        return left, refused
 
     def survivors(self, candidates: Sequence[Candidate]) -> tuple[list[Candidate], str]:
         """Return the candidates from the first on that the robot can put alone.
@@ -175,7 +206,8 @@ class Asking:
         """Return how the robot puts an object among what is given, nothing else."""
         if candidate not in self._alone:
             place = candidate.object_id, candidate.option
-            found = self._out_of_reach.get(place) or self._ask(candidate, frozenset())
+            found = self._out_of_reach.get(place)
+            found = found or self._ask(self._robot.plan, candidate, NOTHING)
             # ASSUME: where nothing lets the robot stand to put an object, nothing lets
             # it put the object turned otherwise; so at all of 146 places of an office.
             if isinstance(found, Refusal) and found.reason == NO_PLACE:
@@ -187,53 +219,75 @@ class Asking:
         self, candidate: Candidate, placed: frozenset[Candidate]
     ) -> Verdict[Candidate]:
         """Return whether the robot can put an object when others are placed."""
-        alone = self.alone(candidate)
-        if isinstance(alone, Refusal):
+        found = self.alone(candidate)
+        if isinstance(found, Refusal):
             return Verdict(False)
-        found = self._ask(candidate, placed) if placed else alone
+        if placed:
+            key = candidate, placed
+            if key not in self._planned:
+                self._planned[key] = self._ask(self._robot.plan, *key)
+            found = self._planned[key]
         if isinstance(found, Motion):
-            self._motions[candidate, placed] = found
             return Verdict(True)
         blockers = frozenset(c for c in placed if c.object_id in found.blockers)
         # Alone it could be put: if the robot blames nothing, all that is new is to
         # blame.
         return Verdict(False, blockers or placed)
 
-    def steps(self, order: Sequence[Candidate]) -> tuple[Step, ...]:
-        """Return the motions of an order, each step of which is feasible."""
+    def carried_out(self, order: Sequence[Candidate]) -> tuple[Step, ...] | None:
+        """Return the motions of an order; None if not all steps can be carried out.
+
+        Then the step that cannot is ruled out.
+        """
         steps = []
         poses = {p.object_id: p.T_world_object for p in self._standing.given}
         for n, candidate in enumerate(order):
-            motion = self._motions[candidate, frozenset(order[:n])]
+            motion = self._motion(candidate, frozenset(order[:n]))
+            if motion is None:
+                return None
             steps.append(Step(candidate, motion, dict(poses)))
             poses[candidate.object_id] = motion.T_world_object
         return tuple(steps)
 
-    def _ask(
+    def _motion(
         self, candidate: Candidate, placed: frozenset[Candidate]
+    ) -> Motion | None:
+        """Return the motion that carries out a step, or None and rule it out."""
+        key = candidate, placed
+        if key in self._carried_out:
+            return self._carried_out[key]
+        found = self._ask(self._robot.carry_out, *key)
+        if isinstance(found, Motion):
+            self._carried_out[key] = found
+            return found
+        self._planned[key] = Refusal(found.reason, ())
+        alone = (
+            self._ask(self._robot.carry_out, candidate, NOTHING) if placed else found
+        )
+        if isinstance(alone, Refusal):
+            self._alone[candidate] = found
+        return None
+
+    def _ask(
+        self, put: Put, candidate: Candidate, placed: frozenset[Candidate]
     ) -> Motion | Refusal:
         """Return how the robot puts an object where others stand."""
         self.n_calls += 1
         boxes = self._given | {c.object_id: self._placed_box(c) for c in placed}
         item = self._standing.items[candidate.object_id]
         T = candidate.placement(item).T_world_object
-        found = self._put(item, T, {name: boxes[name] for name in sorted(boxes)})
-        said = (
-            (found.reason, found.blockers) if isinstance(found, Refusal) else ("", ())
-        )
+        found = put(item, T, {name: boxes[name] for name in sorted(boxes)})
+        refused = found if isinstance(found, Refusal) else Refusal("", ())
         among = tuple(sorted(c.object_id for c in placed))
-        self.tried.append(Tried(candidate, among, *said))
+        self.tried.append(Tried(candidate, among, refused.reason, refused.blockers))
         return found
 
     def _placed_box(self, candidate: Candidate) -> Array:
         """Return the box of a placed object, where the motion alone leaves it, (7,)."""
-        if candidate not in self._placed:
-            motion = self._alone[candidate]
-            assert isinstance(motion, Motion), "what is placed can be placed alone"
-            T, name = motion.T_world_object, candidate.object_id
-            left = Placement(name, candidate.area, T[4:], T[:4])
-            self._placed[candidate] = self._box(left)
-        return self._placed[candidate]
+        motion = self._alone[candidate]
+        assert isinstance(motion, Motion), "what is placed can be placed alone"
+        item = self._standing.items[candidate.object_id]
+        return standing_at(item, motion.T_world_object)
 
     def _box(self, placement: Placement) -> Array:
         """Return the box around a placed object, shape (7,)."""

@@ -5,12 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from placing import rigid
 from placing.scene import Placement, SceneObject
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ import pandas as pd
 from placing.answer_tables import LOCATION, ORIENTATION, PLACED
 from placing.robot.certificates import Certificate, World, certificate_of
 from placing.robot_arranging import (
-    Put,
+    Robot,
     Robotic,
     RobotPlacingConfig,
     Standing,
@@ -60,7 +60,7 @@ def plan(
     question: Question,
     scene: Scene,
     options: pd.DataFrame,
-    put: Put,
+    robot: Robot,
     min_distance_m: float,
     config: RobotPlacingConfig,
 ) -> Iterator[tuple[str, Robotic]]:
@@ -74,9 +74,9 @@ def plan(
     movable = sorted(item.object_id for item in question.wanted if item.is_movable)
     every = {name: found.get(name, []) for name in movable}
     modes = {name: arranged(c, config.n_arranged) for name, c in every.items()}
-    yield WITH, arrange(modes, standing, put, config)
+    yield WITH, arrange(modes, standing, robot, config)
     best = {name: in_falling_score(c) for name, c in every.items()}
-    yield INSIDE, arrange(best, standing, put, config)
+    yield INSIDE, arrange(best, standing, robot, config)
 
 
 def rows_of(
@@ -151,17 +151,17 @@ class Planned:
         self._rows: list[tuple[object, ...]] = []
         self._tried: list[tuple[object, ...]] = []
 
-    def add(self, scene: Scene, put: Put) -> None:
+    def add(self, scene: Scene, robot: Robot) -> None:
         """Let the robot answer the questions of both tasks about a scene."""
         for task in TASKS:
-            self._add(scene, task, put)
+            self._add(scene, task, robot)
 
-    def _add(self, scene: Scene, task: str, put: Put) -> None:
+    def _add(self, scene: Scene, task: str, robot: Robot) -> None:
         """Let the robot answer the questions of a task about a scene."""
         for question in asked_of_robot(scene, task, self._config.n_labels):
             key = scene.scene, task, question.name
             options = self._options.get(key, self._none)
-            args = options, put, self._min_distance_m, self._config
+            args = options, robot, self._min_distance_m, self._config
             for constraints, robotic in plan(question, scene, *args):
                 world = World(self._dataset, *key, constraints)
                 self._rows += rows_of(world, question, robotic)

@@ -9,16 +9,20 @@ from numpy.typing import NDArray
 
 from placing.physics.arrangements import bodies_of, fixed_of
 from placing.physics.settling import SettleConfig
+from placing.rigid import Array
 from placing.robot.checker import CheckerConfig, SceneChecker
 from placing.robot.distance_field import distance_field
 from placing.robot.driving import Floor
+from placing.robot.errands import Boxes, Errand
 from placing.robot.exact import Exact
 from placing.robot.grasps import GraspSheet
 from placing.robot.model import RobotModel
 from placing.robot.planning import PlanningConfig
 from placing.robot.putting import Placer
+from placing.robot.seeking import Seeker
 from placing.robot.truth import Truth
-from placing.scene import Layout, Scene
+from placing.robot_arranging import Robot
+from placing.scene import Layout, Scene, SceneObject
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,18 @@ class RobotConfig:
     checking: CheckerConfig
     planning: PlanningConfig
     settling: SettleConfig
+
+
+def robot_of(placer: Placer) -> Robot:
+    """Return what the search for an order asks, answered by a planner."""
+
+    def errand(item: SceneObject, T_world_object: Array, boxes: Boxes) -> Errand:
+        return Errand(True, item, T_world_object, boxes)
+
+    return Robot(
+        lambda *asked: placer.planned(errand(*asked)),
+        lambda *asked: placer.carried_out(errand(*asked)),
+    )
 
 
 @contextmanager
@@ -53,4 +69,5 @@ def placer_in(
     fixed = fixed_of(layout, margin_m)
     with Truth(model, fixed, checking, settling) as truth:
         exact = Exact(truth, bodies, margin_m, planning.contact_m)
-        yield Placer(model, checker, floor, exact, sheet, planning, seed)
+        seeker = Seeker(checker, floor, exact, sheet, planning, seed)
+        yield Placer(seeker, exact)

@@ -5,12 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
+from placing.answer_tables import LOCATION, ORIENTATION
 from placing.physics.settling import SettleConfig
 from placing.robot.certificates import Certificate
 from placing.robot.film import Film
-from placing.robot.replay import difference
+from placing.robot.walking import difference
 
-AXES = ("x_m", "y_m", "z_m", "qw", "qx", "qy", "qz")
+AXES = (*LOCATION, *ORIENTATION)
 EXECUTED_COLUMNS = (
     *("scenario", "object", "category", "order", "grasp"),
     *(f"planned_{axis}" for axis in AXES),

@@ -5,7 +5,7 @@ grasp for both. Where and in which order is for `placing.robot_arranging` to say
 waits on the pick-up table is in the way like everything else.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -22,14 +22,17 @@ from placing.robot.certificates import Certificate, World, certificate_of
 from placing.robot.checker import CheckerConfig, SceneChecker
 from placing.robot.distance_field import distance_field
 from placing.robot.driving import Floor
+from placing.robot.errands import Boxes, Errand
 from placing.robot.exact import Exact
 from placing.robot.grasps import GraspSheet
 from placing.robot.model import RobotModel
-from placing.robot.paths import Query, connect
-from placing.robot.planning import Motion, PlanningConfig, Refusal, Segment
-from placing.robot.putting import Placer, standing_at
+from placing.robot.paths import connect
+from placing.robot.planning import NO_PATH, Motion, PlanningConfig, Refusal, Segment
+from placing.robot.putting import Placer
+from placing.robot.seeking import Seeker
 from placing.robot.truth import Truth
 from placing.robot_arranging import (
+    Robot,
     Robotic,
     RobotPlacingConfig,
     Standing,
@@ -38,7 +41,7 @@ from placing.robot_arranging import (
 )
 from placing.robot_candidates import Candidate, candidates_of, in_falling_score
 from placing.rooms.checks import footprint
-from placing.scene import Layout, SceneObject
+from placing.scene import Layout, SceneObject, standing_at
 
 Array = NDArray[np.float64]
 Poses = Mapping[str, Array]
@@ -70,21 +73,32 @@ class Fetching:
     starts: Poses
     _known: dict[tuple[str, str], bool] = field(default_factory=dict)
 
-    def put(
-        self, item: SceneObject, T_world_object: Array, boxes: Mapping[str, Array]
+    @property
+    def robot(self) -> Robot:
+        """What the search for an order asks."""
+        return Robot(
+            lambda *asked: self._put(self.placer.planned, *asked),
+            lambda *asked: self._put(self.placer.carried_out, *asked),
+        )
+
+    def _put(
+        self,
+        answer: Callable[[Errand], Motion | Refusal],
+        item: SceneObject,
+        T_world_object: Array,
+        boxes: Boxes,
     ) -> Motion | Refusal:
         """Return how an object is put somewhere with a grasp that picks it up too."""
-        around = self.boxes_around(item, boxes)
-        first = self.placer.put(item, T_world_object, around)
+        errand = Errand(True, item, T_world_object, self.boxes_around(item, boxes))
+        first = answer(errand)
         if isinstance(first, Refusal) or self._picks(item, first.grasp):
             return first
-        for grasp, _ in self.placer.grasps(item):
-            if not self._picks(item, grasp.name):
-                continue
-            found = self.placer.put(item, T_world_object, around, grasp.name)
-            if isinstance(found, Motion):
-                return found
-        return Refusal("no path", ())
+        for grasp in self.placer.seeker.grasps(item):
+            if self._picks(item, grasp):
+                found = answer(replace(errand, grasp=grasp))
+                if isinstance(found, Motion):
+                    return found
+        return Refusal(NO_PATH, ())
 
     def on_the_way(
         self, step: Step, T_world_start: Array, others: Poses, q: Array | None
@@ -96,23 +110,25 @@ class Fetching:
         item = self.items[step.candidate.object_id]
         T = step.candidate.placement(item).T_world_object
         boxes = {name: standing_at(self.items[name], p) for name, p in others.items()}
-        names = [grasp.name for grasp, _ in self.placer.grasps(item)]
+        names = [*self.placer.seeker.grasps(item)]
         names.sort(key=lambda name: name != step.motion.grasp)
-        found = Refusal("no path", ())
+        found = Refusal(NO_PATH, ())
         for back in (None, self._way_home(T_world_start, item, boxes, q)):
             for grasp in names:
                 start = q if back is None else back[-1]
-                pick = self.placer.pick(item, T_world_start, boxes, grasp, start=start)
+                errand = Errand(False, item, T_world_start, boxes, grasp, start)
+                pick = self.placer.carried_out(errand)
                 if isinstance(pick, Refusal):
                     continue
                 end = pick.segments[-1].path[-1]
-                found = self.placer.put(item, T, boxes, grasp, start=end)
+                errand = Errand(True, item, T, boxes, grasp, end)
+                found = self.placer.carried_out(errand)
                 if isinstance(found, Refusal):
                     continue
                 put = self._joined(end, found, item, boxes)
                 if put is not None:
                     return _after(back, pick), put
-                found = Refusal("no path", ())
+                found = Refusal(NO_PATH, ())
         return found
 
     def _joined(
@@ -122,12 +138,10 @@ class Fetching:
         begin = put.segments[0].path[0]
         if np.abs(begin - q).max() < SAME:
             return put
-        placer, config = self.placer, self.placer.config
-        stands = np.array([*boxes.values()]).reshape(-1, 7)
-        checker = placer.checker.with_boxes(stands)
-        what = dict((g.name, held) for g, held in placer.grasps(item))[put.grasp]
-        query = Query(1 + placer.seed, config.n_checks, config.range_rad)
-        path = connect(checker, q, begin, what, query)
+        seeker = self.placer.seeker
+        _, held = seeker.grasps(item)[put.grasp]
+        query = seeker.query(item, put.T_world_object)
+        path = connect(seeker.among(boxes), q, begin, held, query)
         if path is None:
             return None
         first = Segment("shift", path, True, put.segments[0].opening_m)
@@ -143,11 +157,9 @@ class Fetching:
         """Return how the robot drives from `q` to where the floor is most open."""
         if q is None:
             return None
-        own = standing_at(item, T_world_start)
-        stands = np.array([*boxes.values(), own])
-        floor = self.placer.floor
-        checker = floor.checker.with_boxes(stands)
-        return floor.path(floor.start, checker, None, start=q)
+        seeker = self.placer.seeker
+        checker = seeker.among_all(boxes, item, T_world_start)
+        return seeker.floor.path(seeker.floor.start, checker, None, start=q)
 
     def boxes_around(
         self, item: SceneObject, placed: Mapping[str, Array]
@@ -165,7 +177,7 @@ class Fetching:
         key = item.object_id, grasp
         if key not in self._known:
             T, around = self.starts[item.object_id], self.boxes_around(item, {})
-            found = self.placer.pick(item, T, around, grasp)
+            found = self.placer.carried_out(Errand(False, item, T, around, grasp))
             self._known[key] = isinstance(found, Motion)
         return self._known[key]
 
@@ -233,12 +245,12 @@ def plan_scenario(
     fixed, bodies = fixed_of(layout, margin_m), bodies_of(layout.objects, margin_m)
     with Truth(model, fixed, checking, config.settling) as truth:
         exact = Exact(truth, bodies, margin_m, config.planning.contact_m)
-        placer = Placer(model, checker, floor, exact, sheet, config.planning, seed)
-        fetching = Fetching(placer, items, starts)
+        seeker = Seeker(checker, floor, exact, sheet, config.planning, seed)
+        fetching = Fetching(Placer(seeker, exact), items, starts)
         possible = possible_in(asked, layout, config.offering)
         distance_m = asked.model.settings.decision.min_distance_m
         standing = Standing(items, (), distance_m)
-        robotic = arrange(possible, standing, fetching.put, config.robot_placing)
+        robotic = arrange(possible, standing, fetching.robot, config.robot_placing)
         return robotic, *fetched(fetching, robotic, world_of(layout.scene))
 
 

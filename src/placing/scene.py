@@ -146,6 +146,12 @@ def extents(item: SceneObject, placement: Placement) -> Array:
     return np.abs(rigid.matrix(placement.orientation)) @ np.array(item.size_m)
 
 
+def standing_at(item: SceneObject, T_world_object: Array) -> Array:
+    """Return centre, size and yaw of the box around an object at a pose, shape (7,)."""
+    quaternion, location = T_world_object[:4], T_world_object[4:]
+    return standing_box(item, Placement(item.object_id, "", location, quaternion))
+
+
 def standing_box(item: SceneObject, placement: Placement) -> Array:
     """Return centre, size and yaw of the box around a placed object, shape (7,)."""
     size, yaw = extents(item, placement), 0.0

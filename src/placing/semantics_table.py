@@ -15,7 +15,6 @@ from placing.scene import Scene
 
 Array = NDArray[np.float64]
 
-METHODS = ("chance", "height", "semantics")
 COLUMNS = ["category", "method", "n_objects", "top1", "top3", "nll"]
 LEAST = 1e-6
 """Share of a uniform choice mixed in before a log is taken."""

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from placing import rigid
 from placing.errors import unknown
 
 Array = NDArray[np.float64]
@@ -133,10 +134,7 @@ def place(kind: str, location: Array, yaw: Array) -> Array:
 
     `location` (k, 3) is where the pose's origin is, `yaw` (k,) where its x points.
     """
-    cos, sin = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
-    x, y, z = joints(kind).T
-    turned = [cos * x - sin * y, sin * x + cos * y, np.broadcast_to(z, (len(yaw), 15))]
-    return np.stack(turned, axis=-1) + location[:, None]
+    return rigid.turn_about_z(yaw[:, None], joints(kind)) + location[:, None]
 
 
 def capsule_samples(kind: str) -> Array:

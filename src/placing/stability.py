@@ -6,7 +6,7 @@ scikit-learn; the model itself is a few arrays of numbers and needs only a short
 Letters for shapes: c placements, f features, t trees, k nodes of a tree.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -63,6 +63,10 @@ class StabilityModel:
     slope: float
     """Of the calibrated log odds over the sum of the trees."""
     intercept: float
+
+
+Models = Mapping[tuple[str, int], StabilityModel]
+"""A model per kind of fixture and fold of objects, learned without either."""
 
 
 def log_psi_stability(model: StabilityModel, features: NDArray) -> Array:

@@ -14,10 +14,12 @@ from numpy.typing import NDArray
 
 from placing.report import row_of
 from placing.stability import (
+    Models,
     StabilityConfig,
     StabilityModel,
     calibrated,
     fit_trees,
+    log_psi_stability,
     sum_trees,
 )
 
@@ -39,9 +41,6 @@ REPORT_COLUMNS = (
 )
 N_BINS = 10
 ALL = "all"
-
-Models = Mapping[tuple[str, int], StabilityModel]
-"""A model per kind of fixture and fold of objects, learned without either."""
 
 
 def models_without(
@@ -91,6 +90,22 @@ def held_out(
         if len(rows):
             scores[rows] = score(model, features[rows])
     return scores
+
+
+def report_of(
+    models: Mapping[str, Models],
+    features: NDArray,
+    table: pd.DataFrame,
+    folds: NDArray[np.integer],
+    chosen: pd.DataFrame,
+) -> pd.DataFrame:
+    """Return the report on the models of each protocol and what is chosen by them."""
+    rows = []
+    for protocol, known in models.items():
+        scores = held_out(known, features, table, folds, log_psi_stability)
+        mine = chosen[chosen["protocol"] == protocol]
+        rows += report_rows(protocol, table, scores, mine)
+    return pd.DataFrame(rows, columns=list(REPORT_COLUMNS))
 
 
 def report_rows(

@@ -14,7 +14,7 @@ from placing.robot.certificates import Certificate, World
 from placing.robot.inverse import arm_solutions, follow
 from placing.robot.model import load_robot
 from placing.robot.planning import Segment
-from placing.robot.replay import ReplayConfig
+from placing.robot.replay_config import ReplayConfig
 from placing.robot.settings import read_robot
 from placing.rooms.file import read_yaml
 from placing.scene import SceneObject

@@ -13,7 +13,7 @@ from shapely import Polygon, box
 from placing.areas.borders import cover
 from placing.areas.columns import CONTACT_M, DOWN, MARGIN_M, free_heights, sort_columns
 from placing.areas.coverage import compare, solids_of, tabulate, true_areas
-from placing.areas.finder import AreaConfig, clearance_at, find_areas
+from placing.areas.finder import AreaConfig, find_areas
 from placing.areas.masks import close, erode
 from placing.areas.outlines import heal, open_holes
 from placing.clouds.cloud import CloudConfig, preprocess, sample_cloud
@@ -207,7 +207,7 @@ def test_names_are_ordered_and_the_order_of_points_does_not_matter() -> None:
         assert overlap(a, heal(b.polygon_m)) > 0.99
 
 
-def test_clearance_at_agrees_with_looking_at_every_point() -> None:
+def test_free_heights_agree_with_looking_at_every_point() -> None:
     cloud = scan(shelf())
     columns = sort_columns(cloud, 0.04)
     xy = np.random.default_rng(1).uniform(-0.1, 0.9, (300, 2))
@@ -221,14 +221,6 @@ def test_clearance_at_agrees_with_looking_at_every_point() -> None:
         expected[k] = max(above[bounds & (gap <= 0.02)].min(initial=np.inf), 0.0)
     assert np.allclose(found, expected, atol=1e-6)
     assert (columns.facing == DOWN).any()
-
-
-def test_clearance_at_tells_open_from_covered_places() -> None:
-    cloud = scan(shelf())
-    board = at(find_areas(cloud, AREAS), 0.5)[0]
-    inside = np.array([[0.15, 0.2], [0.15, 0.6]])
-    assert clearance_at(cloud, board, inside) == pytest.approx([0.38, 0.38], abs=0.01)
-    assert np.isinf(clearance_at(cloud, board, np.array([[-1.0, -1.0]]))).all()
 
 
 def test_a_slit_opens_every_hole_and_healing_closes_it() -> None:

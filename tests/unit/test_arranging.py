@@ -9,7 +9,7 @@ from placing.candidates import FEATURES, Candidates
 from placing.correlation import separate
 from placing.human import HumanPoses
 from placing.lattice import ArrangingConfig, Lattice
-from placing.potential import Theta, height_factor, log_psi_loc, log_psi_ori
+from placing.potential import Theta, height_factor, log_psi_human, log_psi_ori
 
 THETA = Theta(-0.4, 0.5, 0.3, 2.0, -0.2, 0.3, 3.0, 1.5)
 HALF_HEIGHT = 0.1
@@ -49,7 +49,9 @@ def direct(scene, radius_m=5.0, theta=THETA):
     objects = np.column_stack([candidates.location, np.zeros(len(candidates.area))])
     objects[:, 2] += HALF_HEIGHT
     references = poses.references()
-    psi = np.exp(log_psi_loc(theta, objects, references).astype(float))
+    has_front = np.zeros(len(objects), bool)
+    logs = log_psi_human(theta, objects, has_front, references)
+    psi = np.exp(logs.astype(float))
     offset = objects[:, None, :2] - references[:, :2]
     distance = np.linalg.norm(offset, axis=2)
     return np.where(distance > radius_m + 1e-9, 0, psi)

@@ -227,3 +227,27 @@ def test_a_wider_margin_frees_nothing():
     wide = SceneChecker(pr2(), checker().field, replace(CONFIG, margin_m=0.05))
     rows = anywhere(10, 2000)
     assert not np.any(wide.are_free(rows) & ~checker().are_free(rows))
+
+
+def test_many_rows_get_the_answers_that_each_gets_alone():
+    rows = np.repeat(anywhere(5, 60), 5, axis=0)
+    rng = np.random.default_rng(5)
+    for first, last in ((0, 3), (3, 4), (4, 5), (8, 11), (0, 11)):
+        some = np.arange(len(rows)) % 5 == (first + last) % 5
+        rows[some, first:last] += rng.normal(0, 0.2, (int(some.sum()), last - first))
+    alone = [checker().is_free(q) for q in rows]
+    assert checker().are_free(rows).tolist() == alone
+    assert 20 < sum(alone) < 280
+
+
+def test_an_edge_is_free_where_all_its_steps_are():
+    n_free = 0
+    for q0, q1 in pairwise(anywhere(6, 300)):
+        q1 = np.where(np.arange(len(q1)) < 3 + n_free % 5, q1, q0)
+        way = np.abs(q1 - q0) @ levers(pr2())
+        n = max(1, int(np.ceil(way / CONFIG.step_m)))
+        steps_m = q0 + np.arange(n + 1)[:, None] / n * (q1 - q0)
+        expected = all(checker().is_free(q) for q in steps_m)
+        assert checker().is_edge_free(q0, q1) == expected
+        n_free += expected
+    assert n_free > 5

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from placing import rigid
 from placing.clouds.cloud import (
     CloudConfig,
     drop_outliers,
@@ -14,7 +15,7 @@ from placing.clouds.cloud import (
     sample_cloud,
     thin,
 )
-from placing.clouds.levelling import turn_to_z, vertical
+from placing.clouds.levelling import vertical
 from placing.clouds.ply import Cloud, read_ply
 from placing.errors import BadInput
 
@@ -163,7 +164,7 @@ def test_a_tilted_raised_room_comes_out_level_with_its_floor_at_zero(
     has_normals: bool,
 ) -> None:
     direction = np.array([0.12, -0.08, 1.0])
-    R = turn_to_z(direction / np.linalg.norm(direction)).T
+    R = rigid.turn_up(direction / np.linalg.norm(direction)).T
     cloud = turned(sampled(spacing_m=0.01), R)
     lifted = cloud.points + np.float32([5, 3, 1.3])
     # A scanner sees neither the underside of the slab nor that of the table.
@@ -184,16 +185,6 @@ def test_a_level_room_is_not_moved() -> None:
     ]
     assert np.abs(floor[:, 2]).max() < 1e-5
     assert np.allclose(np.abs(clean.points[:, 0]).max(), 1.5, atol=0.01)
-
-
-def test_turn_to_z_is_a_rotation_for_every_direction() -> None:
-    for direction in np.random.default_rng(3).normal(size=(50, 3)):
-        unit = direction / np.linalg.norm(direction)
-        R = turn_to_z(unit)
-        assert np.allclose(R @ unit, [0, 0, 1])
-        assert np.allclose(R @ R.T, np.eye(3))
-        assert np.linalg.det(R) == pytest.approx(1)
-    assert np.allclose(turn_to_z(np.array([0, 0, -1.0])) @ [0, 0, -1], [0, 0, 1])
 
 
 def test_cropping_keeps_the_inside() -> None:

@@ -1,12 +1,17 @@
 """Driving: ways on the floor are free, and what is shut off is not reached."""
 
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from robot_room import DOCUMENT, checker, stowed
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import dijkstra
 
+from placing import rigid
 from placing.errors import NoFloor
+from placing.robot.checker import held
 from placing.robot.driving import Floor, shortened
 from placing.robot.planning import PlanningConfig
 
@@ -24,7 +29,7 @@ def test_the_start_is_free_and_can_be_turned_at():
     poses = np.tile(start, (16, 1))
     poses[:, 2] = np.arange(16) / 16 * 2 * np.pi
     assert checker().are_free(poses).all()
-    assert floor().is_reachable(*start[:3])
+    assert floor().start_pose in floor().reachable
 
 
 def test_ways_to_reachable_poses_are_free_and_end_there():
@@ -69,3 +74,27 @@ def test_a_scene_without_open_floor_is_one_line():
     full = checker().with_boxes([(2.0, 1.5, 0.5, 6.0, 6.0, 1.0, 0.0)])
     with pytest.raises(NoFloor, match="room: floor: no spot where the robot pr2"):
         Floor(full, CONFIG, "room")
+
+
+def test_ways_with_an_object_are_as_short_as_those_of_an_exhaustive_search():
+    place, lattice = floor(), floor()._lattice
+    post = checker().with_boxes([(0.7, 0.7, 0.5, 0.1, 0.1, 1.0, 0.0)])
+    tray = held("tray", (0.1, 0.3, 0.1), rigid.from_yaw(0.0, (0.05, 0.0, 0.0)))
+    is_free = post.are_free(place.configurations(place.poses), tray)
+    n = len(place.poses)
+    ways = csr_matrix((lattice.length_m, lattice.other, lattice.first), shape=(n, n))
+    ways = ways.multiply(is_free[:, None]).multiply(is_free[None]).tocsr()
+    ways.eliminate_zeros()
+    shortest = dijkstra(ways, indices=place.start_pose)
+    assert is_free[place.start_pose]
+    n_found = 0
+    for goal in np.random.default_rng(2).choice(place.reachable, 40).tolist():
+        args = place.start, lattice, goal, place.start_pose, tray
+        nodes = post.way(*args)
+        assert bool(len(nodes)) == np.isfinite(shortest[goal])
+        if len(nodes):
+            assert (nodes[0], nodes[-1]) == (goal, place.start_pose)
+            length = sum(ways[i, j] for i, j in pairwise(nodes.tolist()))
+            assert np.isclose(length, shortest[goal])
+            n_found += 1
+    assert 5 < n_found < 40

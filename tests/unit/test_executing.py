@@ -18,7 +18,7 @@ from placing.errors import BadArtifact
 from placing.physics.arrangements import bodies_of
 from placing.robot.executing import WAIT, ExecutionConfig, execute
 from placing.robot.film import PlaybackConfig
-from placing.robot.replay import difference
+from placing.robot.walking import difference
 
 GOOD, BODIES = certificate(), bodies()
 CONFIGS = (

@@ -16,7 +16,7 @@ from placing.explanation import (
 )
 from placing.human import HumanPoses
 from placing.lattice import ArrangingConfig, Lattice
-from placing.potential import Theta, log_psi_loc
+from placing.potential import Theta, log_psi_human
 from placing.skeleton import KINDS
 
 THETA = Theta(-0.4, 0.5, 0.0, 2.0, -0.2, 0.3, 3.0, 1.5)
@@ -106,7 +106,9 @@ def test_person_is_the_likeliest_user_at_the_place():
     case = random_case(1)
     candidates, use, weight, _ = case
     at = np.append(candidates.location[9] + [0, 0, 0.1], 0)[None]
-    psi = np.exp(log_psi_loc(THETA, at, use.lattice.people)[0].astype(float))
+    psi = np.exp(
+        log_psi_human(THETA, at, np.zeros(1, bool), use.lattice.people)[0].astype(float)
+    )
     r = weight * psi / use.row()
     chosen = explained(case, 9).chosen
     assert chosen.pose == np.argmax(r)

@@ -8,9 +8,9 @@ import pytest
 import yaml
 
 from placing import rigid
-from placing.orientations import UPSIDE_DOWN
 from placing.physics.bodies import body_of, fixed_pieces
 from placing.physics.settling import SettleConfig, settle
+from placing.rigid import UPSIDE_DOWN
 from placing.shapes.furniture import furniture_shape
 from placing.shapes.holders import (
     PITCH_M,

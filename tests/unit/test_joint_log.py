@@ -264,7 +264,7 @@ def test_an_object_is_in_the_hand_while_it_is_held_and_nowhere_before():
         held = np.flatnonzero(shown.held == k)
         for i in held[:: max(1, len(held) // 7)]:
             tool = robot().links.index(robot().settings.tool_frame)
-            T_world_tool = link_poses(robot(), shown.q[i])[tool]
+            T_world_tool = link_poses(robot().tree, shown.q[i])[tool]
             T = T_world_tool @ rigid.homogeneous(one.T_tool_object)
             np.testing.assert_allclose(rigid.homogeneous(poses[i]), T, atol=1e-9)
         before, after = poses[: held[0]], poses[held[-1] + 1 :]
@@ -284,7 +284,7 @@ def test_links_are_where_the_model_has_them_when_the_gripper_is_open():
     wide = np.full(len(shown.q), robot().settings.max_opening_m)
     poses = link_poses_over(robot(), shown.q, wide)
     for i in (0, len(shown.q) // 3, len(shown.q) - 1):
-        expected = link_poses(robot(), shown.q[i])
+        expected = link_poses(robot().tree, shown.q[i])
         found = np.array([poses[link][i] for link in robot().links])
         np.testing.assert_allclose(found, expected, atol=1e-9)
 

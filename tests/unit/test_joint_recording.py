@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from recorded import count_rows
 from rerun.chunk import RrdReader
 from rerun.experimental import ViewerClient
 from study import study
@@ -33,7 +34,6 @@ from placing.recordings.joint_entities import (
 )
 from placing.recordings.joint_steps import names
 from placing.recordings.joint_words import about_step, summary
-from placing.recordings.writer import count_rows
 from placing.scene import PlacingArea, Scene, SceneObject
 
 RERUN = Path(sys.executable).with_name("rerun")

@@ -7,7 +7,7 @@ import open3d as o3d
 import pytest
 import shapely
 
-from placing.errors import UnknownName
+from placing.errors import BadInput, UnknownName
 from placing.pictures.shading import face_colours
 from placing.rooms.catalogue import read_catalogue
 from placing.shapes.objects import OBJECTS, object_shape
@@ -120,6 +120,13 @@ def test_same_shape_has_the_same_vertices_twice():
     first, second = (object_shape("figurine", (0.1, 0.1, 0.17)).mesh for _ in range(2))
     assert first.vertices.tobytes() == second.vertices.tobytes()
     assert face_colours(first).tobytes() == face_colours(second).tobytes()
+
+
+@pytest.mark.parametrize("shape", ["laptop", "monitor", "spatula", "tv"])
+def test_a_size_in_which_a_part_vanishes_is_refused_in_one_line(shape):
+    said = rf"^object shape '{shape}': size_m is \[0.01, 0.01, 0.01\]; expected [^\n]*$"
+    with pytest.raises(BadInput, match=said):
+        object_shape(shape, (0.01, 0.01, 0.01))
 
 
 def test_unknown_shape_is_named_beside_the_known_ones():

@@ -15,7 +15,6 @@ from placing.orientations import (
     drop_of,
     orientations,
     tipping_deg,
-    turn_down,
 )
 from placing.rooms.catalogue import read_catalogue
 from placing.scene import SceneObject
@@ -126,11 +125,3 @@ def test_the_same_cloud_gives_the_same_orientations():
     assert names_of(first) == names_of(second)
     for a, b in zip(first, second, strict=True):
         assert np.array_equal(a.quaternion, b.quaternion)
-
-
-def test_turning_down_is_a_rotation_that_brings_the_normal_below():
-    rng = np.random.default_rng(0)
-    normals = rng.normal(size=(50, 3))
-    normals /= np.linalg.norm(normals, axis=1)[:, None]
-    for normal in [*normals, np.array([0, 0, 1.0]), np.array([0, 0, -1.0])]:
-        assert rigid.matrix(turn_down(normal)) @ normal == pytest.approx([0, 0, -1])

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from recorded import count_rows
 
 from placing import skeleton
 from placing.candidates import Candidates
@@ -18,7 +19,6 @@ from placing.pictures.office_content import PEOPLE, Figure, Office, Tables, offi
 from placing.pictures.pages import Key, page
 from placing.pictures.people import COLD, KIND_COLOURS, Person, body, heat, limb
 from placing.recordings.office import write_arranged, write_people
-from placing.recordings.writer import count_rows
 from placing.rooms.catalogue import read_catalogue
 from placing.rooms.file import read_yaml
 from placing.rooms.reader import read_layout
@@ -171,12 +171,12 @@ def test_a_category_that_the_room_lacks_is_named_in_one_line(parts):
 
 
 def test_a_page_holds_tiles_title_key_and_notes():
-    red = np.zeros((60, 80, 3), np.uint8) + np.array([250, 0, 0], np.uint8)
+    red = np.zeros((60, 260, 3), np.uint8) + np.array([250, 0, 0], np.uint8)
     key = Key({"sitting": (1, 2, 3)}, "density", "turbo")
-    drawn = page({"a": red, "b": red}, 2, (80, 60), "Title", ["note"], key, 12)
-    assert (drawn == (250, 0, 0)).all(axis=2).sum() == 2 * 60 * 80
+    drawn = page({"a": red, "b": red}, 2, (260, 60), "Title", ["note"], key)
+    assert (drawn == (250, 0, 0)).all(axis=2).sum() == 2 * 60 * 260
     assert (drawn == (1, 2, 3)).all(axis=2).sum() > 20
-    without = page({"a": red, "b": red}, 2, (80, 60), "Title", ["note"], Key({}), 12)
+    without = page({"a": red, "b": red}, 2, (260, 60), "Title", ["note"], Key({}))
     colours = [len(np.unique(p.reshape(-1, 3), axis=0)) for p in (drawn, without)]
     assert colours[0] > colours[1] + 100
 

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from certified import BLOCK, CAN, CONFIG, certificate, settings
+from recorded import count_rows
 from rerun.chunk import RrdReader
 
 from placing.answer_tables import LOCATION, ORIENTATION
@@ -21,7 +22,6 @@ from placing.recordings.plan_blueprint import write_plan
 from placing.recordings.plan_entities import lit_mesh
 from placing.recordings.plan_tables import in_order, result_of, search_of
 from placing.recordings.plan_words import COLOURS, moments, story
-from placing.recordings.writer import count_rows
 from placing.robot.film import PlaybackConfig
 from placing.robot.model import link_poses, load_robot
 from placing.robot.planning import REASONS
@@ -127,7 +127,7 @@ def test_the_hand_is_recorded_where_the_robot_has_it(recording):
     number = robot().links.index("r_wrist_roll_link")
     film = content().film
     for q, found in ((film.q[0], xyz[0]), (film.q[-1], xyz[-1])):
-        at = link_poses(robot(), q)[number][:3, 3]
+        at = link_poses(robot().tree, q)[number][:3, 3]
         np.testing.assert_allclose(found, at, atol=1e-6)
 
 

@@ -12,7 +12,6 @@ from placing.potential import (
     height_factor,
     log_factors,
     log_psi_human,
-    log_psi_loc,
     log_psi_ori,
     planar_table,
 )
@@ -25,6 +24,12 @@ THETAS = (
 )
 ANGLE = st.floats(-7, 7)
 PLACE = st.tuples(st.floats(-3, 3), st.floats(-3, 3), st.floats(0, 2), ANGLE)
+
+
+def psi_loc(theta, objects, pose):
+    """Return Psi_loc of each object with one pose, shape (n,)."""
+    logs = log_psi_human(theta, objects, np.zeros(len(objects), np.bool_), pose)
+    return np.exp(logs[:, 0].astype(float))
 
 
 def random_pairs(rng, n):
@@ -63,7 +68,7 @@ def test_potential_is_the_product_of_the_densities_of_scipy(theta):
     expected = scipy_factors(theta, objects, poses)
     found = log_psi_human(theta, objects, np.ones(50, np.bool_), looking(poses))
     np.testing.assert_allclose(np.diag(found), expected.sum(1), rtol=1e-5, atol=1e-4)
-    found = log_psi_loc(theta, objects, looking(poses))
+    found = log_psi_human(theta, objects, np.zeros(50, np.bool_), looking(poses))
     expected = expected[:, :3].sum(1)
     np.testing.assert_allclose(np.diag(found), expected, rtol=1e-5, atol=1e-4)
 
@@ -96,7 +101,7 @@ def test_psi_loc_integrates_to_one_over_plane_and_height(theta):
     d = np.exp(log_d)
     x, y = 0.3 + d * np.cos(angle), -0.2 + d * np.sin(angle)
     objects = np.column_stack([x, y, z, 0 * z])
-    psi = np.exp(log_psi_loc(theta, objects, looking(pose))[:, 0].astype(float))
+    psi = psi_loc(theta, objects, looking(pose))
     cell = np.prod([(b - a) / n for a, b, n in axes])
     is_clear = d > 0.05  # below it the density is held constant
     whole = (psi * d * d)[is_clear].sum() * cell
@@ -149,7 +154,7 @@ def test_table_and_height_factor_multiply_to_psi_loc(heading, height, radius_m, 
     x, y = (grid.ravel() for grid in np.meshgrid(steps, steps, indexing="ij"))
     objects = np.column_stack([x, y, 0 * x + height, 0 * x])
     pose = np.array([[0.0, 0.0, 1.0, heading * np.pi / 4]])
-    psi = np.exp(log_psi_loc(theta, objects, looking(pose))[:, 0].astype(float))
+    psi = psi_loc(theta, objects, looking(pose))
     factor = height_factor(theta, np.array([height]), np.ones(1))[0, 0]
     expected = np.where(np.hypot(x, y) <= radius_m + 1e-9, psi / factor, 0)
     np.testing.assert_allclose(table[heading].ravel(), expected, rtol=1e-4, atol=1e-30)

@@ -14,12 +14,15 @@ from placing import rigid
 from placing.errors import BadInput
 from placing.physics.arrangements import bodies_of
 from placing.robot.blame import cover
+from placing.robot.errands import Errand
 from placing.robot.exact import Exact
 from placing.robot.held_shapes import carried, cells_of
 from placing.robot.model import tool_pose
 from placing.robot.planning import PICKING, PUTTING, TOO_WIDE, Motion, Refusal
-from placing.robot.putting import Placer, standing_at
+from placing.robot.putting import Placer
+from placing.robot.seeking import Seeker
 from placing.robot.truth import Truth
+from placing.scene import standing_at
 
 CAN = ITEMS["soda_can"]
 BODIES = bodies_of([CAN, ITEMS["broom"]], SETTLING.margin_m)
@@ -30,12 +33,20 @@ PLACE = rigid.from_yaw(0.0, (2.95, 1.5, TOP_M + 0.061 + 0.005))
 def placer():
     truth = Truth(pr2(), pieces(), CHECKING, SETTLING).__enter__()
     exact = Exact(truth, BODIES, SETTLING.margin_m, CONFIG.contact_m)
-    return Placer(pr2(), checker(), floor(), exact, SHEET, CONFIG, 1)
+    return placer_with(exact)
+
+
+def placer_with(exact):
+    return Placer(Seeker(checker(), floor(), exact, SHEET, CONFIG, 1), exact)
+
+
+def to_put(item, T, boxes, grasp="", start=None):
+    return Errand(True, item, T, boxes, grasp, start)
 
 
 @cache
 def put():
-    motion = placer().put(CAN, PLACE, {})
+    motion = placer().carried_out(to_put(CAN, PLACE, {}))
     assert isinstance(motion, Motion), motion
     return motion
 
@@ -60,9 +71,7 @@ def test_the_object_is_let_go_where_it_touches():
 
 
 def test_the_same_question_has_the_same_answer():
-    again = Placer(pr2(), checker(), floor(), placer().exact, SHEET, CONFIG, 1).put(
-        CAN, PLACE, {}
-    )
+    again = placer_with(placer().exact).carried_out(to_put(CAN, PLACE, {}))
     for one, other in zip(put().segments, again.segments, strict=True):
         assert np.array_equal(one.path, other.path)
 
@@ -71,23 +80,37 @@ def test_what_stands_on_the_place_is_to_blame():
     other = rigid.from_yaw(0.0, (2.95, 1.5, TOP_M + 0.1))
     boxes = {"tall": np.array([*other[4:], 0.1, 0.1, 0.2, 0.0])}
     boxes["far"] = np.array([3.3, 0.9, TOP_M + 0.05, 0.05, 0.05, 0.1, 0.0])
-    refusal = placer().put(CAN, PLACE, boxes)
+    refusal = placer().carried_out(to_put(CAN, PLACE, boxes))
     assert isinstance(refusal, Refusal)
     assert refusal.blockers == ("tall",)
 
 
 def test_a_motion_among_boxes_is_free_of_them():
     boxes = {"near": np.array([2.8, 1.75, TOP_M + 0.1, 0.1, 0.1, 0.2, 0.0])}
-    motion = placer().put(CAN, PLACE, boxes)
+    motion = placer().carried_out(to_put(CAN, PLACE, boxes))
     assert isinstance(motion, Motion), motion
     among = checker().with_boxes(np.array(list(boxes.values())))
     assert all(among.are_free(s.path).all() for s in motion.segments[:3])
 
 
+def test_a_known_motion_is_taken_where_it_is_free_and_no_other():
+    far = {"far": np.array([0.3, 2.7, 0.2, 0.1, 0.1, 0.4, 0.0])}
+    known = placer().planned(to_put(CAN, PLACE, {}))
+    assert placer().planned(to_put(CAN, PLACE, far)) is known
+    x, y = known.segments[0].path[-1, :2]
+    there = {**far, "there": np.array([x, y, 0.2, 0.1, 0.1, 0.4, 0.0])}
+    other = placer().planned(to_put(CAN, PLACE, there))
+    among = checker().with_boxes(np.array([*there.values()]))
+    assert isinstance(other, Motion)
+    assert other is not known
+    assert all(among.is_path_free(s.path) for s in other.segments[:1])
+
+
 def test_what_was_put_down_is_picked_up_by_the_same_grasp():
     done = put()
     start = done.segments[-1].path[-1]
-    motion = placer().pick(CAN, done.T_world_object, {}, done.grasp, start)
+    errand = Errand(False, CAN, done.T_world_object, {}, done.grasp, start)
+    motion = placer().carried_out(errand)
     assert isinstance(motion, Motion), motion
     assert tuple(s.name for s in motion.segments) == PICKING
     assert motion.grasp == done.grasp
@@ -98,8 +121,8 @@ def test_what_is_too_wide_is_refused():
     wide = replace(CAN, object_id="drum", size_m=(0.3, 0.3, 0.3))
     bodies = {**BODIES, "drum": BODIES["soda_can"]}
     exact = Exact(placer().exact.truth, bodies, SETTLING.margin_m, 0.03)
-    other = Placer(pr2(), checker(), floor(), exact, SHEET, CONFIG, 1)
-    assert other.put(wide, PLACE, {}) == Refusal(TOO_WIDE, ())
+    other = placer_with(exact)
+    assert other.planned(to_put(wide, PLACE, {})) == Refusal(TOO_WIDE, ())
 
 
 def test_a_start_in_collision_is_one_line():
@@ -108,7 +131,7 @@ def test_a_start_in_collision_is_one_line():
     with pytest.raises(
         BadInput, match=r"room: start: the robot pr2 at x 3.2.*collision"
     ):
-        placer().put(CAN, PLACE, {}, start=start)
+        placer().planned(to_put(CAN, PLACE, {}, start=start))
 
 
 def test_spheres_of_what_is_held_cover_its_shape_and_leave_out_its_air():

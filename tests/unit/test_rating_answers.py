@@ -110,7 +110,8 @@ def test_a_missing_file_is_one_line(tmp_path):
 
 def test_kappa_is_that_of_the_literature():
     # SOURCE: Viera and Garrett, Understanding interobserver agreement: the kappa
-    # statistic, Family Medicine 37(5), 2005: 15 both yes, 70 both no, 5 and 10 apart.
+    # statistic, Family Medicine 37(5), 2005, 360-363: 15 both yes, 70 both no, 5 and 10
+    # apart.
     one = np.repeat([True, True, False, False], [15, 5, 10, 70])
     other = np.repeat([True, False, True, False], [15, 5, 10, 70])
     assert cohen_kappa(one, other) == pytest.approx(0.57, abs=0.005)

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 import shapely
 
+from placing import rigid
 from placing.areas.finder import AreaConfig
 from placing.areas.outlines import heal
 from placing.areas.scans import ScanAreas, find_in_scan, suit_spacing
 from placing.clouds.cloud import CloudConfig, drop_outliers, thin
-from placing.clouds.levelling import turn_to_z
 from placing.clouds.planes import fit_planes
 from placing.clouds.ply import Cloud, read_ply
 from placing.clouds.spacing import floor_noise_m, spacing_m
@@ -119,7 +119,7 @@ def test_areas_of_real_scans_have_sensible_sizes(name: str) -> None:
 @pytest.mark.parametrize("name", [DESK, LASER])
 def test_a_scan_whose_up_is_only_roughly_known_has_the_same_areas(name: str) -> None:
     up = np.array([0.1, -0.12, 1.0])
-    R = turn_to_z(up / np.linalg.norm(up)).T
+    R = rigid.turn_up(up / np.linalg.norm(up)).T
     points = (raw(name).points @ R.T + [3, 1, 2]).astype(np.float32)
     turned = find_in_scan(replace(raw(name), points=points), CLOUD, AREAS)
     whole = sizes(found(name)).sum()

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from recorded import count_rows
 from rerun.chunk import RrdReader
 
 from placing import skeleton
@@ -15,7 +16,7 @@ from placing.diagnostics import DIAGNOSTIC_COLUMNS
 from placing.recordings.blueprint import hidden
 from placing.recordings.content import Boxes, Mesh, SceneRecording, Term, Use
 from placing.recordings.words import reasons, summary
-from placing.recordings.writer import count_rows, write_recording
+from placing.recordings.writer import write_recording
 from placing.scene import PlacingArea
 
 RERUN = Path(sys.executable).with_name("rerun")

@@ -21,10 +21,9 @@ from placing.errors import BadArtifact, BadInput, PlacingError
 from placing.figures import METHODS
 from placing.regions import (
     REGION_LEVELS,
-    all_ranks,
+    TOLERANCE,
     calibrate,
     ranks_of,
-    region,
     region_areas,
 )
 
@@ -34,17 +33,21 @@ TIED = np.array([0.1, 0.3, 0.1, 0.4, 0.1, 0.0])
 def test_the_rank_is_the_mass_of_the_places_at_least_as_dense():
     expected = [1.0, 0.7, 1.0, 0.4, 1.0, 1.0]
     np.testing.assert_allclose(ranks_of(TIED, np.arange(6)), expected)
-    np.testing.assert_allclose(all_ranks(TIED), expected)
     assert float(ranks_of(TIED, 1)) == pytest.approx(0.7)
     np.testing.assert_allclose(ranks_of(5 * TIED, [1]), 0.7)
 
 
-def test_all_ranks_at_once_are_those_of_each_place():
+def test_ranks_are_those_of_each_place():
     rng = np.random.default_rng(0)
     density = rng.integers(0, 30, 400) / 1.0
     direct = [density[density >= d].sum() / density.sum() for d in density]
-    np.testing.assert_allclose(all_ranks(density), direct)
     np.testing.assert_allclose(ranks_of(density, np.arange(400)), direct)
+
+
+def region(density, threshold):
+    """Return the places whose rank is at most a threshold, shape (p,)."""
+    ranks = ranks_of(density, np.arange(len(density)))
+    return (ranks <= threshold + TOLERANCE) | (threshold >= 1)
 
 
 def test_a_region_is_the_densest_places_of_at_most_the_threshold():

@@ -11,15 +11,18 @@ from certified import (
     bodies,
     certificate,
     fixed,
+    pillar,
     settings,
     with_segment,
 )
 
 from placing import rigid
+from placing.physics.bodies import Piece
 from placing.physics.simulator import new_world
 from placing.robot.model import load_robot, tool_pose
 from placing.robot.puppet import Puppet
-from placing.robot.replay import finer, judge_all
+from placing.robot.replay import judge_all
+from placing.robot.walking import finer
 
 GOOD = certificate()
 BODIES = bodies()
@@ -27,9 +30,9 @@ REACH_M = 0.03
 APPROACH, LIFT, DRIVE, LOWER, RETREAT = range(5)
 
 
-def verdict(given, pieces=None):
+def verdict(given, pieces=None, config=REPLAY):
     pieces = fixed() if pieces is None else pieces
-    args = settings(), pieces, BODIES, REPLAY, SETTLING, REACH_M
+    args = settings(), pieces, BODIES, config, SETTLING, REACH_M
     (found,) = judge_all([given], *args)
     return found
 
@@ -55,6 +58,17 @@ def test_a_way_point_in_the_furniture_is_found():
     path = GOOD.segments[LOWER].path.copy()
     path[2, 3] -= 0.12  # the torso sinks until the gripper is in the pillar
     assert "in pillar2 by" in verdict(with_segment(GOOD, LOWER, path=path)).reason
+
+
+def test_what_an_earlier_certificate_hit_is_not_hit_again():
+    mesh = pillar(-0.7, 0, 1) + pillar(5, 0, 1)  # one mesh, the robot between its ends
+    pieces = fixed() | {"fence": (Piece(mesh.vertices, mesh.faces, False),)}
+    path = GOOD.segments[APPROACH].path.copy()
+    path[:, 0] -= 1.09  # the base is before the first side, and 1 cm in it
+    args = settings(), pieces, BODIES, REPLAY, SETTLING, REACH_M
+    bad, good = judge_all([with_segment(GOOD, APPROACH, path=path), GOOD], *args)
+    assert "in fence by" in bad.reason
+    assert good.reason == ""
 
 
 def test_a_joint_beyond_its_limit_is_found():
@@ -110,6 +124,14 @@ def test_a_whole_turn_between_segments_is_no_jump():
         path[:, [2, 10]] += 2 * np.pi
         segments[i] = replace(segments[i], path=path)
     assert verdict(replace(GOOD, segments=tuple(segments))).reason == ""
+
+
+def test_fingers_in_the_object_are_allowed_as_far_as_it_gives_way():
+    squeezed = with_segment(GOOD, DRIVE, opening_m=0.0)  # 3 cm in each side
+    assert verdict(squeezed).reason == ""
+    reason = verdict(squeezed, config=replace(REPLAY, finger_m=0.02)).reason
+    assert reason.startswith("put drive: r_gripper_")
+    assert "finger_tip_link in can1 by 3" in reason
 
 
 def test_an_object_in_the_way_is_found():

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from placing import rigid
 
@@ -82,6 +83,74 @@ def test_yaw_of_takes_many_quaternions_at_once():
     np.testing.assert_allclose(rigid.yaw_of(quaternions), yaws)
 
 
+@given(poses())
+def test_a_pose_comes_back_from_its_matrix(p):
+    back = rigid.from_homogeneous(rigid.homogeneous(p))
+    turn = Rotation.from_quat(np.roll(p[:4], -1)).as_quat(canonical=True)
+    assert back[0] >= 0
+    # Half a turn has two quaternions whose w is zero.
+    sign = np.sign(back[:4] @ np.roll(turn, 1))
+    np.testing.assert_allclose(back[:4], sign * np.roll(turn, 1), atol=1e-9)
+    np.testing.assert_array_equal(back[4:], p[4:])
+
+
+def test_poses_come_back_from_turns_of_half_a_circle_about_every_axis():
+    rng = np.random.default_rng(0)
+    for axis in [*np.eye(3), *unit_vectors(rng, 20)]:
+        R = Rotation.from_rotvec(np.pi * axis).as_matrix()
+        back = rigid.from_homogeneous(np.block([[R, np.ones((3, 1))], [0, 0, 0, 1]]))
+        np.testing.assert_allclose(rigid.matrix(back[:4]), R, atol=1e-12)
+
+
+@given(poses(), ANGLES)
+def test_about_is_the_rotation_vector(p, angle):
+    axis = rigid.matrix(p[:4])[0]
+    expected = Rotation.from_rotvec(angle * axis).as_matrix()
+    np.testing.assert_allclose(
+        rigid.matrix(rigid.about(axis, angle)), expected, atol=1e-9
+    )
+
+
+def test_upward_is_the_last_row_of_each_matrix():
+    quaternions = Rotation.random(24, random_state=0).as_quat().reshape(4, 6, 4)
+    rows = Rotation.from_quat(quaternions.reshape(-1, 4)).as_matrix()[:, 2]
+    up = rigid.upward(np.roll(quaternions, 1, axis=-1))
+    np.testing.assert_allclose(up, rows.reshape(4, 6, 3), atol=1e-12)
+
+
+def unit_vectors(rng, n):
+    vectors = rng.normal(size=(n, 3))
+    return vectors / np.linalg.norm(vectors, axis=1)[:, None]
+
+
+DIRECTIONS = [*unit_vectors(np.random.default_rng(3), 50), [0, 0, 1.0], [0, 0, -1.0]]
+
+
+@pytest.mark.parametrize("direction", DIRECTIONS)
+def test_turning_up_or_down_is_a_rotation_by_no_more_than_the_angle(direction):
+    direction = np.array(direction)
+    for R, goal in (
+        (rigid.turn_up(direction), np.array([0, 0, 1.0])),
+        (rigid.matrix(rigid.turn_down(direction)), np.array([0, 0, -1.0])),
+    ):
+        np.testing.assert_allclose(R @ direction, goal, atol=1e-9)
+        np.testing.assert_allclose(R @ R.T, np.eye(3), atol=1e-9)
+        assert np.linalg.det(R) == pytest.approx(1)
+        angle = Rotation.from_matrix(R).magnitude()
+        assert np.cos(angle) == pytest.approx(direction @ goal)
+
+
+def test_turn_about_z_is_the_pose_of_each_yaw():
+    rng = np.random.default_rng(0)
+    yaws, points = rng.uniform(-7, 7, 5), rng.normal(size=(4, 3))
+    turned = rigid.turn_about_z(yaws[:, None], points)  # (5, 4, 3)
+    for yaw, seen in zip(yaws, turned, strict=True):
+        pose = rigid.from_yaw(yaw, (0, 0, 0))
+        np.testing.assert_allclose(seen, rigid.apply(pose, points), atol=1e-12)
+    flat = rigid.turn_about_z(yaws[:, None], points[:, :2])
+    np.testing.assert_array_equal(flat, turned[..., :2])
+
+
 def test_stances_are_rotations_and_the_edge_is_as_documented():
     R = rigid.matrix(np.array(rigid.STANCES["edge"]))
     np.testing.assert_allclose(R @ [1, 0, 0], [0, 0, 1], atol=1e-12)
@@ -95,3 +164,10 @@ def test_wrap_keeps_the_direction_and_the_range(angle):
     wrapped = rigid.wrap(angle)
     assert -np.pi <= wrapped < np.pi
     np.testing.assert_allclose(np.exp(1j * wrapped), np.exp(1j * angle), atol=1e-9)
+
+
+@given(ANGLES, ANGLES)
+def test_near_keeps_the_direction_and_is_within_half_a_turn(angle, other):
+    turned = rigid.near(angle, other)
+    assert abs(turned - other) <= np.pi + 1e-9
+    np.testing.assert_allclose(np.exp(1j * turned), np.exp(1j * angle), atol=1e-9)

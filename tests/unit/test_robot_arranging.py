@@ -12,14 +12,15 @@ from placing.artifacts.plans import read_plans, write_plans
 from placing.errors import BadArtifact
 from placing.offering import OPTION_COLUMNS
 from placing.overlap import overlaps
-from placing.robot.planning import NO_ARM, NO_PLACE, Motion, Refusal
+from placing.robot.planning import NO_ARM, NO_PLACE, REJECTED, Motion, Refusal
 from placing.robot_arranging import (
     IN_CONFLICT,
     NO_OPTION,
+    NOWHERE,
+    Robot,
     RobotPlacingConfig,
     Standing,
     arrange,
-    put_nowhere,
 )
 from placing.robot_candidates import Candidate
 from placing.robot_plans import INSIDE, WITH, Planned, asked_of_robot
@@ -40,10 +41,18 @@ def motion(item, T):
 
 
 class Arm:
-    """A robot that reaches over nothing: what stands at smaller x hides the rest."""
+    """A robot that reaches over nothing: what stands at smaller x hides the rest.
 
-    def __init__(self, reach_m=np.inf):
-        self.reach_m, self.asked = reach_m, []
+    Beyond `true_m` it only believes that it reaches.
+    """
+
+    def __init__(self, reach_m=np.inf, true_m=np.inf):
+        self.reach_m, self.true_m, self.asked = reach_m, true_m, []
+        self.robot = Robot(self.put, self.carry_out)
+
+    def carry_out(self, item, T, boxes):
+        found = self.put(item, T, boxes)
+        return Refusal(REJECTED, ()) if T[4] > self.true_m else found
 
     def put(self, item, T, boxes):
         self.asked.append((item.object_id, T[4], tuple(boxes)))
@@ -59,7 +68,7 @@ def test_what_is_far_is_placed_first():
         "mouse2": [candidate("mouse2", 0, 1.5)],
         "shoes": [candidate("shoes", 0, 2.0)],
     }
-    robotic = arrange(possible, STANDING, Arm().put, CONFIG)
+    robotic = arrange(possible, STANDING, Arm().robot, CONFIG)
     order = [step.candidate.object_id for step in robotic.steps]
     assert order == ["shoes", "mouse2", "mouse1"]
     assert [sorted(step.standing) for step in robotic.steps] == [
@@ -72,13 +81,13 @@ def test_what_is_far_is_placed_first():
 
 def test_the_best_that_survives_is_taken():
     possible = {"shoes": [candidate("shoes", n, 3.0 - n) for n in range(3)]}
-    robotic = arrange(possible, STANDING, Arm(reach_m=2.5).put, CONFIG)
+    robotic = arrange(possible, STANDING, Arm(reach_m=2.5).robot, CONFIG)
     assert [step.candidate.option for step in robotic.steps] == [1]
 
 
 def test_reasons_are_those_of_the_best_candidate():
     possible = {"shoes": [candidate("shoes", 0, 3.0)], "mouse1": []}
-    robotic = arrange(possible, STANDING, Arm(reach_m=2.0).put, CONFIG)
+    robotic = arrange(possible, STANDING, Arm(reach_m=2.0).robot, CONFIG)
     assert robotic.refused == {"shoes": NO_PLACE, "mouse1": NO_OPTION}
     assert robotic.steps == ()
 
@@ -88,8 +97,8 @@ def test_a_place_out_of_reach_is_asked_for_once_not_by_heading():
     turned = [replace(far, heading=n, yaw_rad=n * 0.8) for n in range(3)]
     possible = {"shoes": [*turned, candidate("shoes", 1, 1.0)]}
     arm = Arm(reach_m=2.0)
-    robotic = arrange(possible, STANDING, arm.put, CONFIG)
-    assert [x for _, x, _ in arm.asked] == [3.0, 1.0]
+    robotic = arrange(possible, STANDING, arm.robot, CONFIG)
+    assert [x for _, x, _ in arm.asked] == [3.0, 1.0, 1.0]
     assert [step.candidate.option for step in robotic.steps] == [1]
 
 
@@ -97,9 +106,22 @@ def test_given_objects_that_hide_a_place_make_it_infeasible_alone():
     given = SCENE.arrangements[0].placements[:1]
     possible = {"shoes": [candidate("shoes", 0, 2.0)]}
     arm = Arm()
-    robotic = arrange(possible, replace(STANDING, given=given), arm.put, CONFIG)
+    robotic = arrange(possible, replace(STANDING, given=given), arm.robot, CONFIG)
     assert robotic.refused == {"shoes": NO_ARM}
     assert arm.asked == [("shoes", 2.0, ("laptop1",))]
+
+
+def test_what_cannot_be_carried_out_is_ruled_out_and_an_order_is_sought_again():
+    possible = {
+        "mouse1": [candidate("mouse1", n, 2.2 - n) for n in range(2)],
+        "shoes": [candidate("shoes", 0, 1.7)],
+    }
+    arm = Arm(true_m=2.0)
+    robotic = arrange(possible, STANDING, arm.robot, CONFIG)
+    done = [(step.candidate.object_id, step.candidate.option) for step in robotic.steps]
+    assert done == [("shoes", 0), ("mouse1", 1)]
+    (rejected,) = {t.candidate.option for t in robotic.tried if t.reason == REJECTED}
+    assert rejected == 0
 
 
 def test_of_objects_in_conflict_the_less_likely_is_left_out():
@@ -107,7 +129,7 @@ def test_of_objects_in_conflict_the_less_likely_is_left_out():
         "mouse1": [candidate("mouse1", 0, 1.0, score=-5)],
         "mouse2": [candidate("mouse2", 0, 1.1, score=-1)],
     }
-    robotic = arrange(possible, STANDING, Arm().put, CONFIG)
+    robotic = arrange(possible, STANDING, Arm().robot, CONFIG)
     assert robotic.refused == {"mouse1": IN_CONFLICT}
     assert [step.candidate.object_id for step in robotic.steps] == ["mouse2"]
 
@@ -125,7 +147,7 @@ def test_random_plans_can_be_carried_out_again():
             for name in names
         }
         arm = Arm(reach_m=2.0)
-        robotic = arrange(possible, STANDING, arm.put, CONFIG)
+        robotic = arrange(possible, STANDING, arm.robot, CONFIG)
         assert len(robotic.steps) + len(robotic.refused) == 3
         assert robotic.n_calls == len(arm.asked) == len(robotic.tried)
         boxes = {}
@@ -152,11 +174,15 @@ def option_rows():
                 yield (*row, x, 2.9, 0.74, 0.0, -1.0 * option, 0.0)
 
 
+def anywhere(item, T, boxes):
+    return motion(item, T)
+
+
 @pytest.fixture
 def planned():
     options = pd.DataFrame(option_rows(), columns=list(OPTION_COLUMNS))
     planned = Planned("rooms", options, 0.25, CONFIG)
-    planned.add(SCENE, lambda item, T, boxes: motion(item, T))
+    planned.add(SCENE, Robot(anywhere, anywhere))
     return planned
 
 
@@ -178,7 +204,7 @@ def test_every_wanted_object_has_a_row_under_both_constraints(planned):
 def test_where_the_robot_cannot_stand_every_object_is_refused_with_that_reason():
     options = pd.DataFrame(option_rows(), columns=list(OPTION_COLUMNS))
     planned = Planned("rooms", options, 0.25, CONFIG)
-    planned.add(SCENE, put_nowhere)
+    planned.add(SCENE, NOWHERE)
     plans = planned.plans()
     offered = plans[plans["task"] == "filled"]
     assert (plans["status"] == "refused").all()

@@ -52,18 +52,22 @@ def test_each_solution_of_the_closed_form_is_right_in_the_physics_engine():
     assert n > 900
 
 
+def trying(robot, n_tries):
+    return replace(robot, settings=replace(robot.settings, n_tries=n_tries))
+
+
 def test_more_pans_find_more_solutions_in_a_fixed_order():
     robot, rng = model("pr2"), np.random.default_rng(2)
     q, T = reachable(rng, "pr2", 1)[0]
-    few, many = (arm_solutions(robot, T, q[3], n) for n in (20, 80))
+    few, many = (arm_solutions(trying(robot, n), T, q[3]) for n in (20, 80))
     assert len(many) > len(few)
-    assert np.array_equal(few, arm_solutions(robot, T, q[3], 20))
+    assert np.array_equal(few, arm_solutions(trying(robot, 20), T, q[3]))
 
 
 def test_what_is_out_of_reach_has_no_solution():
     T = rigid.from_yaw(0.0, (3.0, 0.0, 1.0))
     assert arm_solutions(model("pr2"), T, 0.1).shape == (0, 7)
-    assert len(arm_solutions(model("tiago"), T, 0.1, 4)) == 0
+    assert len(arm_solutions(trying(model("tiago"), 4), T, 0.1)) == 0
 
 
 def test_an_arm_of_another_shape_is_refused():
@@ -79,7 +83,7 @@ def test_the_numerical_inverse_is_right_in_the_physics_engine():
     solved = 0
     with Bullet(robot) as bullet:
         for q, T in reachable(rng, "tiago", 40):
-            arms = arm_solutions(robot, T, q[3], 12)
+            arms = arm_solutions(trying(robot, 12), T, q[3])
             assert_within_limits(robot, arms)
             solved += len(arms) > 0
             for arm in arms[:3]:
@@ -116,7 +120,7 @@ def test_a_followed_line_is_straight_and_without_jumps(name, n_lines):
         line = np.tile(tool_pose(robot, q), (11, 1))
         line[:, 6] += np.linspace(0, 0.1, 11)
         path = follow(robot, q, line)
-        if path is None:
+        if len(path) < len(line):
             continue
         n += 1
         assert np.array_equal(path[:, :4], np.tile(q[:4], (11, 1)))
@@ -134,7 +138,7 @@ def test_a_followed_line_continues_a_joint_that_has_turned_round():
     q = np.array([0, 0, 0, 0.1, *robot.settings.carry])
     q[[8, 10]] += 4 * np.pi
     path = follow(robot, q, np.tile(tool_pose(robot, q), (3, 1)))
-    assert path is not None
+    assert len(path) == 3
     assert np.allclose(path, q, atol=1e-6)
 
 
@@ -143,6 +147,8 @@ def test_a_line_out_of_reach_is_not_followed():
     q = np.array([0, 0, 0, 0.1, *robot.settings.carry])
     line = np.tile(tool_pose(robot, q), (100, 1))
     line[:, 4] += np.linspace(0, 1.0, 100)
-    assert follow(robot, q, line) is None
+    path = follow(robot, q, line)
+    assert 0 < len(path) < len(line)
+    assert len(follow(robot, q, line[: len(path)])) == len(path)
     jump = line[[0, 99]] - np.array([0, 0, 0, 0, 0.7, 0, 0]) * [[0], [1]]
-    assert follow(robot, q, jump) is None
+    assert len(follow(robot, q, jump)) == 1

@@ -12,7 +12,7 @@ from placing.errors import BadInput
 from placing.robot.kernels import sphere_centres
 from placing.robot.meshes import hull_of
 from placing.robot.model import link_poses, load_robot, tool_pose
-from placing.robot.tree import gripper_values
+from placing.robot.tree import fixed_values, gripper_values, moving_joints, tree_of
 from placing.robot.urdf import read_srdf
 
 HELD_M, HELD_AT_M = (0.3, 0.086, 0.3), (0.12, 0, 0)
@@ -38,7 +38,7 @@ def test_every_link_is_where_the_physics_engine_has_it(name):
         for q in random_configurations(rng, name, 40):
             bullet.move(q)
             wanted = [rigid.homogeneous(bullet.pose(link)) for link in robot.links]
-            assert np.allclose(link_poses(robot, q), wanted, atol=2e-6)
+            assert np.allclose(link_poses(robot.tree, q), wanted, atol=2e-6)
 
 
 def test_the_tool_is_the_tool_frame_of_the_description():
@@ -62,7 +62,7 @@ def test_the_tool_lies_between_fingers_that_close_along_y(name):
             shape.link in robot.settings.gripper_links
         ):
             points = hull_of(shape).points_m @ rigid.matrix([1, 0, 0, 0]).T
-            T = link_poses(robot, q)[robot.links.index(shape.link)]
+            T = link_poses(robot.tree, q)[robot.links.index(shape.link)]
             world = points @ T[:3, :3].T + T[:3, 3]
             fingers.append(rigid.apply(T_tool_world, world))
     left, right = sorted(fingers, key=lambda points: points[:, 1].mean())
@@ -96,7 +96,10 @@ def test_spheres_stand_out_no_farther_than_their_limit():
 @pytest.mark.parametrize("share", [0, 0.3, 1])
 def test_fingers_at_any_opening_are_inside_the_spheres(share):
     robot = model("pr2")
-    opened = load_robot(robot.settings, share * robot.settings.max_opening_m)
+    opening_m = share * robot.settings.max_opening_m
+    values = fixed_values(robot.settings, robot.description, opening_m)
+    chain = moving_joints(robot.settings, robot.description)
+    _, opened = tree_of(robot.settings, robot.description, chain, values)
     q = standing(robot, 0.1, robot.settings.stow)
     centres = np.empty((len(robot.spheres.radius_m), 3))
     sphere_centres(robot.tree, robot.spheres, q, centres)
@@ -110,19 +113,6 @@ def test_fingers_at_any_opening_are_inside_the_spheres(share):
             own = robot.spheres.link == robot.links.index(shape.link)
             gap = np.linalg.norm(points[:, None] - centres[own], axis=2)
             assert np.all(np.min(gap - robot.spheres.radius_m[own], axis=1) < 0)
-
-
-def test_a_group_contains_its_spheres_and_groups_are_in_order_of_the_arm():
-    groups, spheres = model("pr2").groups, model("pr2").spheres
-    assert groups.first[0] == 0
-    assert groups.first[-1] == len(spheres.radius_m)
-    for g in range(len(groups.link)):
-        own = slice(groups.first[g], groups.first[g + 1])
-        gap = np.linalg.norm(spheres.at_m[own] - groups.at_m[g], axis=1)
-        assert np.all(gap + spheres.radius_m[own] <= groups.radius_m[g] + 1e-9)
-        assert np.all(spheres.link[own] == groups.link[g])
-        assert np.all(spheres.frame[own] == groups.frame[g])
-    assert np.all(np.diff(groups.frame) <= 0)
 
 
 def test_two_calls_give_the_same_bytes():
@@ -194,7 +184,9 @@ def test_body_and_resting_arm_clear_the_base_at_all_heights():
 def test_the_arm_stays_near_the_body_when_it_is_stowed_or_carries():
     robot = model("pr2")
     for pose, most_m in (("stow", 0.45), ("carry", 0.55)):
-        poses = link_poses(robot, standing(robot, 0.02, getattr(robot.settings, pose)))
+        poses = link_poses(
+            robot.tree, standing(robot, 0.02, getattr(robot.settings, pose))
+        )
         for hull in robot.hulls:
             T = poses[robot.links.index(hull.link)]
             points = hull.points_m @ T[:3, :3].T + T[:3, 3]
@@ -247,5 +239,5 @@ def test_an_arm_in_another_order_is_refused():
 def test_frames_are_right_handed_rotations():
     robot, rng = model("tiago"), np.random.default_rng(5)
     for q in random_configurations(rng, "tiago", 5):
-        R = link_poses(robot, q)[:, :3, :3]
+        R = link_poses(robot.tree, q)[:, :3, :3]
         assert np.allclose(Rotation.from_matrix(R).as_matrix(), R, atol=1e-9)

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+import room_plan
 import yaml
+from likeness import likeness
 
 from placing import rigid
 from placing.errors import BadInput
-from placing.rooms import plan as room_plan
 from placing.rooms.catalogue import read_catalogue
-from placing.rooms.likeness import likeness
 from placing.rooms.reader import read_layout
 from placing.scene import Layout, SceneObject
 from placing.shapes.furniture import furniture_shape

@@ -29,6 +29,7 @@ from placing.stability_report import (
     held_out,
     models_without,
     precision_at,
+    report_of,
     report_rows,
     stability_markdown,
 )
@@ -194,6 +195,16 @@ def test_models_of_a_protocol_never_saw_what_they_are_asked_about(monkeypatch):
         for (kind, fold), values in zip(cases, seen, strict=True):
             used = (folds() != fold) & (table["fixture"] != kind).to_numpy()
             assert values == features[used, 0].tolist()
+
+
+def test_the_report_takes_the_rows_of_each_protocol():
+    features, table, _ = tried()
+    models = {SAME: models_without(NAMES, features, table, folds(), SAME, CONFIG)}
+    chosen = table.head(10).assign(protocol=[SAME] * 4 + [NEW] * 6)
+    report = report_of(models, features, table, folds(), chosen)
+    scores = held_out(models[SAME], features, table, folds(), log_psi_stability)
+    rows = report_rows(SAME, table, scores, chosen.head(4))
+    pd.testing.assert_frame_equal(report, pd.DataFrame(rows), check_dtype=False)
 
 
 def test_the_report_finds_what_can_be_known():

@@ -81,7 +81,7 @@ def test_the_object_moved_farthest_is_the_one_with_the_longest_way():
 def test_parts_stand_where_the_links_of_the_robot_do():
     frame = len(stage().film.q) // 2
     drawn = trimesh.util.concatenate(stage().robot(frame))
-    poses = link_poses(robot(), stage().film.q[frame])
+    poses = link_poses(robot().tree, stage().film.q[frame])
     corners = [
         hull.points_m @ T[:3, :3].T + T[:3, 3]
         for hull in robot().hulls

@@ -60,7 +60,7 @@ rule tabulate_semantics:
         "results/benchmarks/tabulate_semantics/{dataset}.tsv"
     params:
         code=digest("tabulate_semantics"),
-        settings=flags("looking", "semantics", "baselines"),
+        settings=flags("looking", "baselines"),
     shell:
         r"""
         python workflow/scripts/tabulate_semantics.py \

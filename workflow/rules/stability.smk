@@ -12,6 +12,8 @@ OUTPUTS
     results/stability/table.csv, .md     how well it knows new objects and new areas
 """
 
+TRYING = ("cloud", "orientations", "looking", "trials", "settling")
+
 
 rule run_trials:
     """Put objects down on pieces of furniture and watch whether they stay."""
@@ -29,7 +31,7 @@ rule run_trials:
         seed=config["seed"],
         spacing_m=config["scan"]["spacing_m"],
         reach_m=config["putting_down"]["reach_m"],
-        settings=flags("cloud", "orientations", "looking", "trials", "settling"),
+        settings=flags(*TRYING, within="settings."),
     shell:
         r"""
         python workflow/scripts/run_trials.py \
@@ -63,9 +65,8 @@ rule learn_stability:
         seed=config["seed"],
         spacing_m=config["scan"]["spacing_m"],
         reach_m=config["putting_down"]["reach_m"],
-        settings=flags(
-            *("cloud", "orientations", "looking", "trials", "settling", "stability")
-        ),
+        settings=flags(*TRYING, within="settings."),
+        stability=flags("stability"),
     shell:
         r"""
         python workflow/scripts/learn_stability.py \
@@ -80,5 +81,6 @@ rule learn_stability:
             --reach-m {params.reach_m:q} \
             --n-workers {threads} \
             {params.settings:q} \
+            {params.stability:q} \
             2>{log:q}
         """

@@ -1,7 +1,7 @@
 """Learn what every method needs from the scenes of the folds that are not held out."""
 
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -25,8 +25,6 @@ from placing.scene import Scene
 from placing.seeds import generator
 
 log = logging.getLogger(__name__)
-
-Training = Sequence[tuple[Scene, Candidates, HumanPoses]]
 
 
 def main(

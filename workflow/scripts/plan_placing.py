@@ -18,9 +18,9 @@ from placing.layouts import layout_reader
 from placing.robot.grasps import GraspSheet, read_grasps
 from placing.robot.model import load_robot
 from placing.robot.settings import RobotSettings, read_robot
-from placing.robot_arranging import RobotPlacingConfig, put_nowhere
+from placing.robot_arranging import NOWHERE, RobotPlacingConfig
 from placing.robot_plans import Planned
-from placing.robot_scene import RobotConfig, placer_in
+from placing.robot_scene import RobotConfig, placer_in, robot_of
 from placing.rooms.file import read_yaml
 
 log = logging.getLogger(__name__)
@@ -72,10 +72,10 @@ def main(
         args = read_layout(name), model, sheet, settings, seed
         try:
             with placer_in(scene, points, *args) as placer:
-                made.add(scene, placer.put)
+                made.add(scene, robot_of(placer))
         except NoFloor as error:
             log.warning("%s", error)
-            made.add(scene, put_nowhere)
+            made.add(scene, NOWHERE)
     write_plans(plans, made.plans())
     write_table(tried, made.tried())
     write_certificates(certificates, robot[0], body.urdf, body.chain, made.certificates)

@@ -7,9 +7,8 @@ from pathlib import Path
 from tqdm import tqdm
 
 from command import run
-from placing.artifacts.features import read_features
+from placing.artifacts.models import read_model
 from placing.artifacts.proposals import write_proposals
-from placing.artifacts.scenes import read_scene
 from placing.artifacts.semantics import read_semantics
 from placing.artifacts.stability import read_stability
 from placing.artifacts.theta import read_learned
@@ -22,7 +21,7 @@ from placing.object_clouds import LookingConfig
 from placing.orientations import OrientationsConfig
 from placing.proposing import propose_for
 from placing.psi_object import PsiObject, PsiObjectConfig
-from placing.scene_model import SceneModel, Settings
+from placing.scene_model import Settings
 from placing.seeds import generator
 
 log = logging.getLogger(__name__)
@@ -68,19 +67,15 @@ def main(
     models = read_stability(stability), read_semantics(semantics)
     chosen = [read_tuning(path, "empty")[0].n_components for path in tuning]
     choices = Choices(most_frequent(chosen), 1.0)
+    config = psi_object, looking, orientations
     for path in tqdm(sorted(scenes.glob("*.json")), unit="scene", disable=None):
-        scene = read_scene(path)
-        cloud = read_ply(clouds / f"{scene.scene}.ply")
-        candidates, poses = read_features(features / f"{scene.scene}.npz")
-        model = SceneModel(scene, candidates, poses, learned, settings)
-        config = psi_object, looking, orientations
-        psi = PsiObject(scene, cloud, candidates, models, config)
-        names = (dataset, scene.scene)
-        stream = partial(generator, seed, "propose_placements", *names)
+        model = read_model(path, features, learned, settings)
+        name, cloud = path.stem, read_ply(clouds / f"{path.stem}.ply")
+        psi = PsiObject(model.scene, cloud, model.candidates, models, config)
+        stream = partial(generator, seed, "propose_placements", dataset, name)
         proposed = propose_for(stream, model, psi, choices, proposing)
-        write_proposals(proposals / f"{scene.scene}.npz", proposed)
-        n_options = len(proposed.proposals.object)
-        log.info("%s: %d options", scene.scene, n_options)
+        write_proposals(proposals / f"{name}.npz", proposed)
+        log.info("%s: %d options", name, len(proposed.proposals.object))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """Record and log every plan of a fold: what the robot does in its empty scenes."""
 
 import logging
+from collections.abc import Iterator
 from pathlib import Path
 
 from tqdm import tqdm
@@ -13,9 +14,10 @@ from placing.artifacts.plans import read_plans
 from placing.artifacts.scenes import read_scene
 from placing.clouds.ply import read_ply
 from placing.joint_log import write_log
-from placing.recordings.plan import plan_recording
+from placing.recordings.plan import Search, plan_recording
 from placing.recordings.plan_blueprint import write_plan
 from placing.recordings.plan_tables import in_order, result_of, rows_about, search_of
+from placing.robot.certificates import Certificate
 from placing.robot.film import PlaybackConfig, film
 from placing.robot.model import load_robot
 from placing.robot.settings import read_robot
@@ -60,34 +62,36 @@ def main(
         films: Directory of what was seen when plans were carried out; left out: the
             plans themselves are shown.
     """
-    kind = {"task": task, "constraints": constraints}
-    planned = rows_about(read_plans(plans), kind)
-    asked = rows_about(read_table(tried, TRIED_COLUMNS), kind)
     model = load_robot(read_robot(robot, read_yaml(robot_schema)))
-    moved = [
-        one
-        for one in read_certificates(certificates).certificates
-        if (one.world.task, one.world.constraints) == (task, constraints)
-    ]
     for folder in (recordings, logs):
         folder.mkdir(parents=True, exist_ok=True)
-    for name in tqdm(sorted(set(planned["scene"])), unit="scene", disable=None):
-        rows = (rows_about(table, {"scene": name}) for table in (planned, asked))
-        search = search_of(*rows)
-        shown = in_order([c for c in moved if c.world.scene == name], search)
-        if not shown:
-            log.info("%s: the robot places nothing, there is nothing to record", name)
-            continue
-        scene = read_scene(scenes / f"{name}.json")
-        cloud = read_ply(clouds / f"{name}.ply")
-        planned_film = film(shown, model, playback)
-        seen = planned_film if films is None else read_film(films / f"{name}.npz")
-        about = (fold, scene, cloud, model, shown, search, playback, seen)
-        content = plan_recording(*about)
+    kind = {"task": task, "constraints": constraints}
+    found = list(_searches(plans, tried, certificates, kind))
+    for name, search, shown in tqdm(found, unit="scene", disable=None):
+        seen = read_scene(scenes / f"{name}.json"), read_ply(clouds / f"{name}.ply")
+        planned = film(shown, model, playback)
+        done = planned if films is None else read_film(films / f"{name}.npz")
+        content = plan_recording(fold, *seen, model, shown, search, playback, done)
         write_plan(recordings / f"{name}.rrd", content)
         result = result_of(shown, search)
-        write_log(logs / f"{name}.mcap", model, result, content.plan, planned_film)
+        write_log(logs / f"{name}.mcap", model, result, content.plan, planned)
     log.info("fold %d %s %s: plans recorded", fold, task, constraints)
+
+
+def _searches(
+    plans: Path, tried: Path, certificates: Path, kind: dict[str, str]
+) -> Iterator[tuple[str, Search, list[Certificate]]]:
+    """Yield each scene of a kind, what was searched there and what is moved."""
+    tables = read_plans(plans), read_table(tried, TRIED_COLUMNS)
+    moved = read_certificates(certificates).certificates
+    for name in sorted(set(rows_about(tables[0], kind)["scene"])):
+        key = kind | {"scene": name}
+        search = search_of(*(rows_about(table, key) for table in tables))
+        mine = [one for one in moved if key.items() <= vars(one.world).items()]
+        if shown := in_order(mine, search):
+            yield name, search, shown
+        else:
+            log.info("%s: the robot places nothing, there is nothing to record", name)
 
 
 if __name__ == "__main__":

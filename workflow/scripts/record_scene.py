@@ -19,6 +19,7 @@ from placing.errors import unknown
 from placing.explanation import EXPLANATION_COLUMNS
 from placing.metrics import SCORE_COLUMNS
 from placing.recordings.assembly import Job, scene_recording
+from placing.recordings.content import SceneRecording
 from placing.recordings.tables import Tables
 from placing.recordings.writer import write_recording
 
@@ -73,26 +74,37 @@ def main(
         recordings: Directory to write.
         seed: Seed of the study, named in the recordings.
     """
-    methods = sorted(read_table(arrangements, ["method"])["method"].unique())
-    if method not in methods:
-        raise unknown(f"method of {arrangements}", method, methods)
     job = Job(dataset, task, method, fold, seed)
     paths = arrangements, poses, scores, traces, diagnostics, explanations
+    tables = _tables(paths, method)
+    recordings.mkdir(parents=True, exist_ok=True)
+    for path in tqdm(sorted(scenes.glob("*.json")), unit="scene", disable=None):
+        content = _content(job, path, (clouds, features, densities), tables(path.stem))
+        write_recording(recordings / f"{path.stem}.rrd", content)
+    log.info("%s fold %d %s: recorded", dataset, fold, task)
+
+
+def _content(
+    job: Job, path: Path, folders: tuple[Path, Path, Path], tables: Tables
+) -> SceneRecording:
+    """Return what is recorded of a scene, of which clouds and so on are in folders."""
+    clouds, features, densities = folders
+    cloud = read_ply(clouds / f"{path.stem}.ply")
+    model = read_scene(path), cloud, *read_features(features / f"{path.stem}.npz")
+    dense = read_densities(densities / f"{path.stem}.npz")
+    return scene_recording(job, *model, dense, tables)
+
+
+def _tables(paths: Sequence[Path], method: str) -> Callable[[str], Tables]:
+    """Return the function from a scene to its tables, the first being the answers."""
+    methods = sorted(read_table(paths[0], ["method"])["method"].unique())
+    if method not in methods:
+        raise unknown(f"method of {paths[0]}", method, methods)
     read = {
         name: _of_scenes(path, columns, method)
         for (name, columns), path in zip(COLUMNS.items(), paths, strict=True)
     }
-    recordings.mkdir(parents=True, exist_ok=True)
-    for path in tqdm(sorted(scenes.glob("*.json")), unit="scene", disable=None):
-        name = path.stem
-        tables = Tables(**{of: rows(name) for of, rows in read.items()})
-        seen = read_ply(clouds / f"{name}.ply")
-        model = (read_scene(path), seen, *read_features(features / f"{name}.npz"))
-        dense = read_densities(densities / f"{name}.npz")
-        write_recording(
-            recordings / f"{name}.rrd", scene_recording(job, *model, dense, tables)
-        )
-    log.info("%s fold %d %s: recorded", dataset, fold, task)
+    return lambda scene: Tables(**{name: rows(scene) for name, rows in read.items()})
 
 
 def _of_scenes(

@@ -7,15 +7,9 @@ from tqdm import tqdm
 
 from command import run
 from placing.artifacts.formats import write_table
-from placing.clouds.cloud import CloudConfig
-from placing.object_clouds import LookingConfig
-from placing.orientations import OrientationsConfig
-from placing.physics.arrangements import bodies_of
-from placing.physics.grounds import grounds_of, pieces_of_fixtures
+from placing.physics.bench import BenchConfig, bench_of
 from placing.physics.running import run_trials, with_outcomes
-from placing.physics.settling import SettleConfig
-from placing.physics.things import things_of
-from placing.physics.trials import TrialsConfig, draw_trials
+from placing.physics.trials import draw_trials
 from placing.rooms.catalogue import read_catalogue
 
 log = logging.getLogger(__name__)
@@ -28,11 +22,7 @@ def main(
     spacing_m: float,
     reach_m: float,
     n_workers: int,
-    cloud: CloudConfig,
-    orientations: OrientationsConfig,
-    looking: LookingConfig,
-    trials: TrialsConfig,
-    settling: SettleConfig,
+    settings: BenchConfig,
 ) -> None:
     """Try placements of every object on pieces of furniture and watch them.
 
@@ -43,20 +33,12 @@ def main(
         spacing_m: Mean distance of the points of a scan.
         reach_m: How far an object is moved up or down until it touches.
         n_workers: Processes that simulate; results do not depend on it.
-        cloud: Preprocessing of the scans.
-        orientations: How objects are turned.
-        looking: How closely objects and scenes are looked at.
-        trials: What is tried.
-        settling: What counts as staying put.
+        settings: Sections of the configuration that trials look at.
     """
-    things = things_of(
-        read_catalogue(catalogue), looking.object_spacing_m, orientations
-    )
-    grounds = grounds_of(seed, trials.noise_m, looking.cell_m, cloud, spacing_m)
-    table = draw_trials(seed, grounds, things, trials)
-    bodies = bodies_of([t.item for t in things.values()], settling.margin_m)
-    fixed = pieces_of_fixtures(grounds, settling.margin_m)
-    watched = run_trials(table, fixed, bodies, settling, reach_m, n_workers)
+    bench = bench_of(seed, read_catalogue(catalogue), spacing_m, settings)
+    table = draw_trials(seed, bench.grounds, bench.things, settings.trials)
+    let_go = bench.fixed, bench.bodies, settings.settling, reach_m, n_workers
+    watched = run_trials(table, *let_go)
     outcomes = list(tqdm(watched, total=len(table), unit="trial", disable=None))
     done = with_outcomes(table, outcomes)
     write_table(trials_file, done)

@@ -12,12 +12,11 @@ from command import run
 from placing.answer_sheets import COLUMNS, Sheets
 from placing.answering import Asked
 from placing.artifacts.densities import write_densities
-from placing.artifacts.features import read_features
 from placing.artifacts.formats import write_table
-from placing.artifacts.scenes import read_scene
+from placing.artifacts.models import read_model
 from placing.artifacts.theta import read_learned
 from placing.artifacts.tuning import read_tuning
-from placing.learned import Choices, Learned
+from placing.learned import Choices
 from placing.likelihoods import ScoringConfig
 from placing.offering import OfferingConfig
 from placing.scene_model import SceneModel, Settings
@@ -86,15 +85,6 @@ def blank(
     choices, ranks = zip(*(read_tuning(tuning, task) for task in TASKS), strict=True)
     pairs = zip(TASKS, ranks, strict=True)
     return choices, [Sheets(scoring, of_task[task]) for task, of_task in pairs]
-
-
-def read_model(
-    path: Path, features: Path, learned: Learned, settings: Settings
-) -> SceneModel:
-    """Return a scene with what a fold has learned."""
-    scene = read_scene(path)
-    candidates, valid = read_features(features / f"{scene.scene}.npz")
-    return SceneModel(scene, candidates, valid, learned, settings)
 
 
 def fill(

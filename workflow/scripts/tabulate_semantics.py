@@ -16,7 +16,7 @@ from placing.baselines import BaselinesConfig
 from placing.clouds.ply import read_ply
 from placing.labelled_areas import label_scene
 from placing.object_clouds import LookingConfig
-from placing.semantics import SemanticsConfig, log_odds
+from placing.semantics import log_odds
 from placing.semantics_table import height_shares, hit_rows, tabulate_semantics
 
 log = logging.getLogger(__name__)
@@ -30,7 +30,6 @@ def main(
     clouds: tuple[Path, ...],
     table: Path,
     looking: LookingConfig,
-    semantics: SemanticsConfig,
     baselines: BaselinesConfig,
 ) -> None:
     """Tell how often the area that a labeller chose is among the most probable ones.
@@ -43,7 +42,6 @@ def main(
         clouds: Directories of their clouds, in the same order.
         table: Table to write, a line for each category and method.
         looking: How closely objects and scenes are looked at.
-        semantics: How objects were described.
         baselines: Bins of the histograms of heights.
     """
     rows = []

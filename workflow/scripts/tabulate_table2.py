@@ -1,6 +1,7 @@
 """Tabulate Table 2: correct places and scores, measured, published and rated."""
 
 import logging
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pandas as pd
@@ -69,43 +70,50 @@ def main(
         ratings: Files of raters.
     """
     answers = read_table(joint, ANSWER_COLUMNS)
-    categories = sorted({item.category for item in read_catalogue(catalogue).values()})
-    places = read_correct_places(correct_places, supports, categories)
-    read_layout = layout_reader(rooms, schema, catalogue)
+    categories = {item.category for item in read_catalogue(catalogue).values()}
+    places = read_correct_places(correct_places, supports, sorted(categories))
     read = [read_scene(path) for path in sorted(scenes.glob("*.json"))]
-    every = _scored(
-        [read_layout(scene.scene) for scene in read],
-        *(read, features, answers, places, seed, min_overlap),
-    )
+    args = layout_reader(rooms, schema, catalogue), features, seed
+    every = _scored(read, (answers, places, min_overlap), *args)
     known = blinded(answers, {scene.scene: scene.objects for scene in read}, seed)
     given = read_ratings(ratings, read_yaml(ratings_schema), known)
-    of_cells = cells(every)
-    measured = table2(of_cells)
-    by_raters = table2(rated_cells(given)) if ratings else measured.iloc[:0]
-    write_csv(scores, every)
-    write_csv(table, measured)
-    write_csv(rated, by_raters)
-    said = pd.read_csv(paper)
-    page = table2_markdown(of_cells, measured, said, by_raters, agreement(given))
-    write_text(markdown, page)
+    _write(every, given, pd.read_csv(paper), (scores, table, rated, markdown))
     log.info("%d scenes, %d files of raters", len(read), len(ratings))
 
 
+def _write(
+    every: pd.DataFrame,
+    given: pd.DataFrame,
+    paper: pd.DataFrame,
+    outputs: tuple[Path, Path, Path, Path],
+) -> None:
+    """Write scores, Table 2, the same by raters, and a page with the paper's."""
+    scores, table, rated, markdown = outputs
+    of_cells = cells(every)
+    measured = table2(of_cells)
+    by_raters = table2(rated_cells(given)) if len(given) else measured.iloc[:0]
+    write_csv(scores, every)
+    write_csv(table, measured)
+    write_csv(rated, by_raters)
+    page = table2_markdown(of_cells, measured, paper, by_raters, agreement(given))
+    write_text(markdown, page)
+
+
 def _scored(
-    layouts: list[Layout],
-    read: list[Scene],
+    read: Sequence[Scene],
+    judged_by: tuple[pd.DataFrame, CorrectPlaces, float],
+    read_layout: Callable[[str], Layout],
     features: Path,
-    answers: pd.DataFrame,
-    places: CorrectPlaces,
     seed: int,
-    min_overlap: float,
 ) -> pd.DataFrame:
-    """Return the errors and verdicts of all scenes."""
-    found = []
-    both = list(zip(layouts, read, strict=True))
-    for layout, scene in tqdm(both, unit="scene", disable=None):
+    """Return the errors and verdicts of all scenes.
+
+    They are judged by the answers, the correct places and the least overlap.
+    """
+    (answers, places, min_overlap), found = judged_by, []
+    for scene in tqdm(read, unit="scene", disable=None):
         candidates, _ = read_features(features / f"{scene.scene}.npz")
-        verdicts = verdicts_of(layout, scene, answers, places)
+        verdicts = verdicts_of(read_layout(scene.scene), scene, answers, places)
         rng = generator(seed, "tabulate_table2", scene.scene)
         args = scene, candidates, answers, verdicts, min_overlap
         found.append(score_scene(rng, *args))

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from placing.areas.columns import (
     MARGIN_M,
     Columns,
-    free_heights,
     points_at,
     sort_columns,
 )
@@ -85,18 +84,6 @@ def find_areas(cloud: Cloud, config: AreaConfig) -> tuple[PlacingArea, ...]:
         for area in _areas(columns, tiles.take(members), config)
     ]
     return _name(_without_ghosts(areas), config.merge_m)
-
-
-def clearance_at(
-    cloud: Cloud | Columns, area: PlacingArea, xy_m: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Return the free height above points of an area, `inf` if open, shape (q,) [m].
-
-    Who asks for several areas sorts the cloud once: `sort_columns(cloud, cell_m)`.
-    """
-    columns = sort_columns(cloud, 0.04) if isinstance(cloud, Cloud) else cloud
-    heights = np.full(len(xy_m), area.height_m)
-    return free_heights(columns, np.reshape(xy_m, (-1, 2)), heights, PIN_RADIUS_M)
 
 
 def _flatten(tiles: Tiles, labels: NDArray, merge_m: float) -> NDArray[np.int64]:

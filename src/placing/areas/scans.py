@@ -28,12 +28,9 @@ class ScanAreas:
     cloud: Cloud
     """Cleaned and level, floor at z = 0."""
     areas: tuple[PlacingArea, ...]
-    cloud_config: CloudConfig
     area_config: AreaConfig
     spacing_m: float
     """Width of the square of surface that most points stand for."""
-    floor_noise_m: float
-    """Standard deviation of the heights of the floor."""
 
 
 def find_in_scan(raw: Cloud, cloud: CloudConfig, areas: AreaConfig) -> ScanAreas:
@@ -45,7 +42,7 @@ def find_in_scan(raw: Cloud, cloud: CloudConfig, areas: AreaConfig) -> ScanAreas
     noise = floor_noise_m(clean)
     thickness = min(LEVEL_SIGMAS * noise, MOST_LEVELS * areas.merge_m)
     areas = replace(areas, merge_m=max(areas.merge_m, thickness))
-    return ScanAreas(clean, find_areas(clean, areas), cloud, areas, spacing, noise)
+    return ScanAreas(clean, find_areas(clean, areas), areas, spacing)
 
 
 def suit_spacing(

@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from placing import rigid
 from placing.clouds.planes import fit_planes
 from placing.clouds.ply import Cloud
 from placing.errors import BadInput
@@ -39,7 +40,7 @@ def level(
     if np.hypot(*direction[:2]) < LEVEL_RAD and direction[2] > 0:
         points, normals = cloud.points.copy(), cloud.normals
     else:
-        R = turn_to_z(direction)  # (3, 3)
+        R = rigid.turn_up(direction)  # (3, 3)
         points, normals = _turn(cloud.points, R), _turn(cloud.normals, R)
     points[:, 2] -= floor_height(points, normals, max_tilt_rad, fraction)
     return replace(cloud, points=points, normals=normals)
@@ -64,15 +65,6 @@ def vertical(
         if np.linalg.norm(direction - before) < LEVEL_RAD / 10:
             break  # Fewer points around the same direction would give it again.
     return direction
-
-
-def turn_to_z(direction: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the smallest rotation that turns a unit vector to z, shape (3, 3)."""
-    x, y, z = direction
-    if z < -1 + 1e-12:  # Opposite to z the smallest rotation is not unique.
-        return np.diag([1.0, -1.0, -1.0])
-    skew = np.array([[0.0, 0.0, -x], [0.0, 0.0, -y], [x, y, 0.0]])
-    return np.eye(3) + skew + skew @ skew / (1 + z)
 
 
 def floor_height(

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache
 
 from shapely import MultiPoint, Polygon
 
@@ -55,11 +56,17 @@ def check_arrangements(
 def bodies_of(objects: Iterable[SceneObject], margin_m: float) -> dict[str, Body]:
     """Return the bodies of objects by id; the slow part, so worth doing once."""
     return {
-        item.object_id: body_of(
-            object_shape(item.shape, item.size_m).mesh, item.mass_kg, margin_m
-        )
+        item.object_id: _body(item.shape, item.size_m, item.mass_kg, margin_m)
         for item in objects
     }
+
+
+@cache
+def _body(
+    shape: str, size_m: tuple[float, float, float], mass_kg: float, margin_m: float
+) -> Body:
+    """Return the body of an object; the scenes of a fold share most of theirs."""
+    return body_of(object_shape(shape, size_m).mesh, mass_kg, margin_m)
 
 
 def fixed_of(layout: Layout, margin_m: float) -> dict[str, tuple[Piece, ...]]:

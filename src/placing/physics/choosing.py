@@ -26,9 +26,7 @@ from placing.physics.trials import (
 )
 from placing.rigid import Array
 from placing.seeds import generator
-from placing.stability import StabilityModel, log_psi_stability
-
-Models = Mapping[tuple[str, int], StabilityModel]
+from placing.stability import Models, log_psi_stability
 
 
 def features_of(

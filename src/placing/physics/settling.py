@@ -7,6 +7,7 @@ a seat and does not sink in.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 import pybullet
@@ -23,6 +24,8 @@ from placing.physics.simulator import (
     supports_of,
 )
 from placing.rigid import Array
+
+NO_AIMS: Mapping[str, Array] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -75,12 +78,14 @@ def settle(
     bodies: Mapping[str, tuple[Body, Array]],
     config: SettleConfig,
     reach_m: float = 0.0,
+    aims: Mapping[str, Array] = NO_AIMS,
 ) -> dict[str, Settled]:
     """Return what each body does when it is let go at its pose `T_world_body`.
 
     `fixed` holds furniture in the frame of the world; poses are those of the meshes
     the bodies come from. The lowest first, bodies are put down before: moved up or down
-    by at most `reach_m` until they touch.
+    by at most `reach_m` until they touch. Motion is measured from there, or from where
+    `aims` says that a body is to be.
     """
     with new_world(config.step_rate_hz, config.friction, config.margin_m) as world:
         for name, piece in near_pieces(fixed, bodies, config.near_m):
@@ -97,7 +102,9 @@ def settle(
             pybullet.stepSimulation(world.client)
         return {
             world.names[i]: Settled(
-                *overlaps[i], *motion(world, i, body, T), supports_of(world, i)
+                *overlaps[i],
+                *motion(world, i, body, aims.get(world.names[i], T)),
+                supports_of(world, i),
             )
             for i, (body, T) in starts.items()
         }

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import NamedTuple
 
 import numpy as np
 import pybullet
@@ -34,6 +35,16 @@ class World:
     """Shell around convex pieces."""
     names: dict[int, str]
     """Of each body of the simulator."""
+
+
+class Overlap(NamedTuple):
+    """A point where two bodies overlap."""
+
+    depth_m: float
+    at_m: tuple[float, float, float]
+    """In the world, on the other body."""
+    normal: tuple[float, float, float]
+    """From the other body."""
 
 
 @contextmanager
@@ -123,20 +134,32 @@ def wavefront(pieces: tuple[Piece, ...]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def deepest_overlap(world: World, i: int) -> tuple[float, str]:
-    """Return the deepest overlap of a body and the name of what it overlaps with.
+def near_pairs(world: World, i: int) -> list[tuple[int, int, int]]:
+    """Return what may overlap with a body, sorted: its link, other body, link of that.
 
-    It is looked for anew: the contacts that a step leaves behind follow a body that is
-    put elsewhere and are millimetres wrong there.
+    Bodies are as the last collision detection found them; filtered pairs are left out.
     """
-    box = pybullet.getAABB(i, physicsClientId=world.client)
-    near = pybullet.getOverlappingObjects(*box, physicsClientId=world.client) or ()
+    # A contact of an earlier pose follows a body that is put elsewhere, and one with a
+    # triangle takes the place of a deeper one with the next: how deep a contact is says
+    # nothing, but no pair overlaps without one.
+    return sorted({(c[3], c[2], c[4]) for c in contacts_of(world, i)})
+
+
+def overlaps(world: World, i: int, pair: tuple[int, int, int]) -> list[Overlap]:
+    """Return where a body overlaps with one of what is near it, asked anew."""
+    link, other, other_link = pair
+    points = pybullet.getClosestPoints(
+        i, other, 0.0, link, other_link, physicsClientId=world.client
+    )
+    return [Overlap(-p[8], p[6], p[7]) for p in points]
+
+
+def deepest_overlap(world: World, i: int) -> tuple[float, str]:
+    """Return the deepest overlap of a body and the name of what it overlaps with."""
     depths = [
-        (-point[8], other)
-        for other in sorted({body for body, _ in near} - {i})
-        for point in pybullet.getClosestPoints(
-            i, other, 0.0, physicsClientId=world.client
-        )
+        (overlap.depth_m, pair[1])
+        for pair in near_pairs(world, i)
+        for overlap in overlaps(world, i, pair)
     ]
     depth, other = max(depths, default=(0.0, -1))
     return (depth, world.names[other]) if depth > 0 else (0.0, "")

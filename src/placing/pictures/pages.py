@@ -12,7 +12,7 @@ from placing.pictures.labels import INK, LINE, PAPER, sheet
 
 Picture = NDArray[np.uint8]
 
-MARGIN, GAP = 22, 14
+MARGIN, GAP, TEXT_PX = 22, 14, 24
 BAR = (220, 16)
 """Width and height of a scale of colours."""
 
@@ -34,34 +34,33 @@ def page(
     title: str,
     notes: Sequence[str],
     key: Key,
-    text_px: int = 24,
 ) -> Picture:
     """Return captioned tiles below a title and above notes and a key of colours."""
-    grid = Image.fromarray(sheet(tiles, columns, tile, text_px))
-    line = text_px + GAP
+    grid = Image.fromarray(sheet(tiles, columns, tile, TEXT_PX))
+    line = TEXT_PX + GAP
     head, foot = MARGIN + round(1.5 * line), line * (len(notes) + 1) + MARGIN
     size = (grid.width + 2 * MARGIN, head + grid.height + foot)
     image = Image.new("RGB", size, PAPER)
     image.paste(grid, (MARGIN, head))
-    draw, font = ImageDraw.Draw(image), ImageFont.load_default(text_px)
+    draw, font = ImageDraw.Draw(image), ImageFont.load_default(TEXT_PX)
     draw.text(
-        (MARGIN, MARGIN), title, fill=INK, font=ImageFont.load_default(1.3 * text_px)
+        (MARGIN, MARGIN), title, fill=INK, font=ImageFont.load_default(1.3 * TEXT_PX)
     )
     top = head + grid.height + GAP // 2
-    _draw_key(image, draw, key, top, text_px)
+    _draw_key(image, draw, key, top)
     for n, note in enumerate(notes, 1):
         draw.text((MARGIN, top + n * line), note, fill=LINE, font=font)
     return np.asarray(image)
 
 
 def _draw_key(
-    image: Image.Image, draw: ImageDraw.ImageDraw, key: Key, top: int, text_px: int
+    image: Image.Image, draw: ImageDraw.ImageDraw, key: Key, top: int
 ) -> None:
     """Draw swatches with their names from the left, and a scale at the right."""
-    font, left = ImageFont.load_default(text_px), float(MARGIN)
+    font, left = ImageFont.load_default(TEXT_PX), float(MARGIN)
     for name, colour in key.colours.items():
-        draw.ellipse((left, top + 4, left + text_px, top + 4 + text_px), fill=colour)
-        left += text_px + 8
+        draw.ellipse((left, top + 4, left + TEXT_PX, top + 4 + TEXT_PX), fill=colour)
+        left += TEXT_PX + 8
         draw.text((left, top), name, fill=INK, font=font)
         left += draw.textlength(name, font=font) + 2 * GAP
     if key.scale:

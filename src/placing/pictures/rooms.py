@@ -27,15 +27,15 @@ PALE, PLATE_M = 0.45, 0.05
 """White in the floor of pictures, and thickness of the plate below walls left out."""
 CORNERS_DEG = (50.0, 130.0, 230.0, 310.0)
 """Headings from which a room can be seen."""
+ELEVATION_DEG = 52.0
+"""How far above the floor of the room its camera is."""
 
 
-def room_camera(
-    layout: Layout, size: tuple[int, int], elevation_deg: float = 52.0
-) -> Camera:
+def room_camera(layout: Layout, size: tuple[int, int]) -> Camera:
     """Return the camera that sees the room from the corner that hides least."""
     low, high = np.min(layout.outline_m, axis=0), np.max(layout.outline_m, axis=0)
     corners = corners_of(np.append(low, 0.0), np.append(high, layout.height_m))
-    cameras = [framing(corners, a, elevation_deg, size, 34.0) for a in CORNERS_DEG]
+    cameras = [framing(corners, a, ELEVATION_DEG, size, 34.0) for a in CORNERS_DEG]
     hidden = [_hidden(layout, camera) for camera in cameras]
     best = cameras[int(np.argmin(hidden))]
 
@@ -43,7 +43,7 @@ def room_camera(
     near = [_is_near(layout.outline_m, k, eye) for k in range(len(layout.outline_m))]
     drawn = [c for c in corners if c[2] == 0 or not _on_near(layout, near, c[:2])]
     azimuth = CORNERS_DEG[int(np.argmin(hidden))]
-    return framing(np.array(drawn), azimuth, elevation_deg, size, 34.0, 0.04)
+    return framing(np.array(drawn), azimuth, ELEVATION_DEG, size, 34.0, 0.04)
 
 
 def seen_meshes(

@@ -7,7 +7,6 @@ timeline `object`. The numbers here only steer how things look.
 import matplotlib as mpl
 import numpy as np
 import rerun as rr
-from numpy.typing import NDArray
 from rerun.components import FillMode
 
 from placing.recordings.blueprint import Eye
@@ -21,8 +20,6 @@ from placing.recordings.joint_entities import (
 )
 from placing.recordings.joint_words import about_step, score_label, stack_label, steps
 from placing.recordings.strips import strips
-
-Array = NDArray[np.float64]
 
 TIMELINE = "object"
 HEAT_HEIGHT_M, HEAT_FILL = 0.004, 0.96

@@ -10,7 +10,7 @@ import pyarrow as pa
 import rerun as rr
 from numpy.typing import NDArray
 
-from placing import skeleton
+from placing import rigid, skeleton
 from placing.recordings.strips import packed
 from placing.recordings.thinning import evenly, thin
 
@@ -133,10 +133,9 @@ def names_over_heads(
 def skeletons(poses: pd.DataFrame) -> Array:
     """Return the joints of poses of any kind in the world, shape (k, 15, 3) [m]."""
     upright = np.stack([skeleton.joints(kind) for kind in skeleton.KINDS])
-    x, y, z = np.moveaxis(upright[class_ids(poses)], -1, 0)  # (k, 15) each
     yaw = poses["yaw_rad"].to_numpy()[:, None]
-    turned = [np.cos(yaw) * x - np.sin(yaw) * y, np.sin(yaw) * x + np.cos(yaw) * y, z]
-    return np.stack(turned, -1) + poses[["x_m", "y_m", "z_m"]].to_numpy()[:, None]
+    turned = rigid.turn_about_z(yaw, upright[class_ids(poses)])
+    return turned + poses[["x_m", "y_m", "z_m"]].to_numpy()[:, None]
 
 
 def class_ids(poses: pd.DataFrame) -> NDArray[np.uint16]:

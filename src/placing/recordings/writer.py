@@ -5,11 +5,9 @@ components of rerun, `blueprint` arranges what is seen when the file is opened. 
 the last three and this file import rerun.
 """
 
-from collections import Counter
 from pathlib import Path
 
 import rerun as rr
-from rerun.chunk import RrdReader
 
 from placing.artifacts.atomic import replacing
 from placing.recordings import blueprint, entities, pose_entities, use_entities
@@ -49,11 +47,3 @@ def _log(stream: rr.RecordingStream, content: SceneRecording) -> None:
     stream.send_blueprint(
         blueprint.layout(content, eye), make_active=True, make_default=True
     )
-
-
-def count_rows(path: Path) -> dict[str, int]:
-    """Return the number of rows of each entity of a recording, static ones too."""
-    rows: Counter[str] = Counter()
-    for chunk in RrdReader(path).stream():
-        rows[chunk.entity_path] += chunk.num_rows
-    return dict(sorted(rows.items()))

@@ -14,7 +14,7 @@ from scipy.stats import qmc
 from placing import rigid
 from placing.rigid import Array
 from placing.robot.checker import Held, SceneChecker
-from placing.robot.distance_field import DistanceField
+from placing.robot.distance_field import open_field
 from placing.robot.grasps import facing
 from placing.robot.inverse import arm_solutions
 from placing.robot.model import RobotModel, tool_pose
@@ -28,8 +28,6 @@ N_TOGETHER = 24
 """Poses checked together; only speed depends on it."""
 N_CHOSEN = 4
 """Arms kept for an object: above a table another one is free than on open floor."""
-OPEN_M = 10.0
-"""Distance to everything in a world without furniture."""
 TILT_M = 0.1
 """Way that an object is rather held outwards than upside down."""
 
@@ -40,7 +38,7 @@ class Carrying:
     def __init__(self, checker: SceneChecker) -> None:
         """Find the poses that are free of the robot itself."""
         self.model = checker.model
-        self._alone = SceneChecker(self.model, _nothing(), checker.config)
+        self._alone = SceneChecker(self.model, open_field(), checker.config)
         arms = np.vstack([self.model.settings.carry, _arms(self.model)])
         self.arms = arms[self._are_free(arms, None)]  # (k, a)
         tools = [tool_pose(self.model, q) for q in self._at(self.arms, 0)]
@@ -99,10 +97,3 @@ def _arms(model: RobotModel) -> Array:
         T_base_tool = np.concatenate([facing(*angles), (x, y, z)])
         arms.append(arm_solutions(model, T_base_tool, low_m)[:2])
     return np.vstack(arms)
-
-
-def _nothing() -> DistanceField:
-    """Return the field of a world without furniture."""
-    far = np.full((3, 3, 3), OPEN_M, np.float32)
-    corner = np.array([-OPEN_M, -OPEN_M, 0.0])
-    return DistanceField(corner, OPEN_M, far, np.zeros((3, 3), np.float32))

@@ -20,12 +20,14 @@ from placing.rigid import Array
 from placing.robot.distance_field import DistanceField, FieldConfig
 from placing.robot.kernels import (
     Body,
+    Lattice,
     Surroundings,
     are_free,
     edge_free,
     hand_boxes,
     hands_free,
     state_hits,
+    way,
 )
 from placing.robot.model import RobotModel
 
@@ -193,6 +195,16 @@ class SceneChecker:
         self._count(1)
         return Hits(bool(scene), bool(itself), tuple(np.flatnonzero(boxes).tolist()))
 
+    def way(
+        self, q: Array, lattice: Lattice, goal: int, root: int, held: Held | None = None
+    ) -> NDArray[np.int64]:
+        """Return numbers of the poses of a lattice on the way from `goal` to `root`.
+
+        Torso and arm are those of a configuration (4 + a,) that is free of itself.
+        """
+        args = self.model.tree, self._body(held), self._around
+        return way(*args, np.asarray(q, float), lattice, goal, root)
+
     def _wrists(self, Ts_world_tool: Array) -> Array:
         """Return the last frame of the arm with the tool at (n, 4, 4), (n, 3, 4)."""
         tool = np.eye(4)
@@ -245,13 +257,15 @@ def make_body(model: RobotModel, config: CheckerConfig) -> Body:
     gripper = [model.links.index(link) for link in model.settings.gripper_links]
     position = {number: i for i, number in enumerate(numbers.tolist())}
     pairs = [(position[i], position[j]) for i, j in model.self_pairs.tolist()]
-    lever_m = levers(model)
+    lever_m, frame = levers(model), tree.link_frame[numbers]
+    n_spheres = [len(radius) for _, radius in parts]
     return Body(
         *_clustered(parts, config),
-        frame=tree.link_frame[numbers],
+        frame=frame,
         is_gripper=np.isin(numbers, gripper),
         n_robot=len(numbers),
         pairs=np.array(pairs, np.int64).reshape(-1, 2),
+        sphere_frame=np.repeat(frame, n_spheres),
         lever_m=lever_m,
         span_m=float(lever_m[2] + spheres.radius_m.max()),
     )
@@ -265,6 +279,7 @@ def holding(body: Body, model: RobotModel, held: Held, config: CheckerConfig) ->
     pairs = [(body.n_robot, i) for i in np.flatnonzero(~body.is_gripper).tolist()]
     ends = (more[3][1:] + body.cluster[-1], more[5][1:] + body.link[-1])
     lever_m, radius = levers(model, held), np.append(body.radius_m, more[1])
+    last = len(model.tree.axis) - 1
     return Body(
         np.vstack([body.at_m, more[0]]),
         radius,
@@ -273,10 +288,11 @@ def holding(body: Body, model: RobotModel, held: Held, config: CheckerConfig) ->
         np.vstack([body.cluster_ball, more[4]]),
         np.append(body.link, ends[1]),
         np.vstack([body.link_ball, more[6]]),
-        frame=np.append(body.frame, len(model.tree.axis) - 1),
+        frame=np.append(body.frame, last),
         is_gripper=np.append(body.is_gripper, True),
         n_robot=body.n_robot,
         pairs=np.vstack([body.pairs, pairs]),
+        sphere_frame=np.append(body.sphere_frame, np.full(len(more[1]), last)),
         lever_m=lever_m,
         span_m=float(lever_m[2] + radius.max()),
     )

@@ -17,6 +17,10 @@ Mask = NDArray[np.bool_]
 Floats = NDArray[np.float32]
 
 
+OPEN_M = 1e4
+"""Distance to everything in a world without furniture; no scene is as wide."""
+
+
 @dataclass(frozen=True)
 class FieldConfig:
     """How a cloud becomes a distance field; values: config/config.yaml."""
@@ -164,3 +168,10 @@ def _open_air(is_wide: Mask, is_scanned: Mask, config: FieldConfig) -> Mask:
     counts = np.bincount(above[is_scanned], minlength=n_pieces + 1)
     counts[0] = 0
     return pieces == (counts.argmax() if counts.any() else -1)
+
+
+def open_field() -> DistanceField:
+    """Return the field of a world without furniture."""
+    far = np.full((3, 3, 3), OPEN_M, np.float32)
+    corner = np.array([-OPEN_M, -OPEN_M, 0.0])
+    return DistanceField(corner, OPEN_M, far, np.zeros((3, 3), np.float32))

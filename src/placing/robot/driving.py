@@ -7,22 +7,17 @@ the most open spot is found once; every way starts and ends there.
 Letters: n poses of the lattice, e edges, t rows of a path.
 """
 
-from collections.abc import Iterator
-
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
 from placing.errors import NoFloor
-from placing.rigid import Array
+from placing.rigid import Array, near
 from placing.robot.checker import Held, SceneChecker
-from placing.robot.floor_lattice import Ints, grid, near, pairs, poses
+from placing.robot.floor_lattice import Ints, grid, pairs, poses
+from placing.robot.kernels import Lattice
 from placing.robot.planning import PlanningConfig
-
-N_TREES = 32
-"""Trees of ways that are kept, the last ones: each holds a megabyte or two."""
 
 
 class Floor:
@@ -43,11 +38,9 @@ class Floor:
                 f"{scene}: floor: no spot where the robot {settings.robot} can stand;"
                 " expected a scan with open floor"
             )
-        self.edges, self.lengths = self._joined(checker, self.is_free)
         self.start_pose = self._most_open()
-        self.distance, self.before = self._tree(self.start_pose, None)
-        self.reachable = np.flatnonzero(np.isfinite(self.distance))
-        self._trees: dict[tuple, tuple[Array, Ints]] = {}
+        self._lattice = self._joined()
+        self.reachable = np.flatnonzero(np.isfinite(self._lattice.distance_m))
 
     @property
     def start(self) -> Array:
@@ -65,10 +58,6 @@ class Floor:
         arms = np.repeat(arm[None], len(poses), axis=0)
         return np.hstack([poses, torso, arms])
 
-    def are_reachable(self, poses: Array) -> NDArray[np.bool_]:
-        """Return whether the lattice's pose next to each (b, 3) is reachable, (b,)."""
-        return np.isfinite(self._distances_at(poses))
-
     def poses_around(
         self, x: float, y: float, reach_m: tuple[float, float], bearing: Array
     ) -> Array:
@@ -80,14 +69,9 @@ class Floor:
         offset = np.array([x, y]) - poses[:, :2]
         away = np.hypot(*offset.T)
         seen = np.arctan2(offset[:, 1], offset[:, 0]) - poses[:, 2]
-        middle = bearing.mean()
-        seen = middle + (seen - middle + np.pi) % (2 * np.pi) - np.pi
+        seen = near(seen, bearing.mean())
         is_near = (away >= reach_m[0]) & (away <= reach_m[1])
         return poses[is_near & (seen >= bearing[0]) & (seen <= bearing[1])]
-
-    def is_reachable(self, x: float, y: float, yaw: float) -> bool:
-        """Return whether the robot can drive to the lattice's pose next to this one."""
-        return bool(self.are_reachable(np.array([[x, y, yaw]]))[0])
 
     def path(
         self,
@@ -110,53 +94,22 @@ class Floor:
             return None
         if checker.is_edge_free(first, last, held):
             return np.array([first, last])
-        trees = self._lazily(first, checker, held, start is None)
-        for before in trees:
-            path = self._along(before, first, last)
-            if path is not None:
-                path = shortened(path, checker, held)
-                if checker.is_path_free(path, held):
-                    return path
-        return None
-
-    def _lazily(
-        self, first: Array, checker: SceneChecker, held: Held | None, from_start: bool
-    ) -> Iterator[Ints]:
-        """Yield trees of ways: that of furniture alone, then one of what is there."""
-        at = self.start_pose if from_start else int(self._nearest(first[None, :3])[0])
-        yield self.before if from_start else self._tree(at, None)[1]
-        key = (
-            at,
-            None if held is None else (held.object_id, held.T_tool_object.tobytes()),
-            checker.boxes,
-            first[3:].tobytes(),
-        )
-        if key not in self._trees:
-            q = self.configurations(self.poses[self.is_free], arm=first[4:])
-            is_free = self.is_free.copy()
-            is_free[self.is_free] = checker.are_free(q, held)
-            if len(self._trees) >= N_TREES:
-                del self._trees[next(iter(self._trees))]
-            self._trees[key] = self._tree(at, is_free)
-        yield self._trees[key][1]
-
-    def _along(self, before: Ints, first: Array, last: Array) -> Array | None:
-        """Return the way along a tree from its root to next to `last`, (t, 4 + a)."""
-        node = int(self._nearest(last[None, :3])[0])
-        nodes = [node]
-        while before[node] >= 0:
-            node = int(before[node])
-            nodes.append(node)
-        if not self._is_root(node, first):
+        base = self._way(first, last, checker, held)
+        if not len(base):
             return None
-        base = self.poses[nodes[::-1]]
         base = np.vstack([first[:3], base, last[:3]])
         base[:, 2] = np.unwrap(base[:, 2])
-        return np.hstack([base, np.repeat(first[None, 3:], len(base), axis=0)])
+        path = np.hstack([base, np.repeat(first[None, 3:], len(base), axis=0)])
+        path = shortened(path, checker, held)
+        return path if checker.is_path_free(path, held) else None
 
-    def _is_root(self, node: int, first: Array) -> bool:
-        """Return whether a way that ends at `node` came from the pose next to first."""
-        return node == int(self._nearest(first[None, :3])[0])
+    def _way(
+        self, first: Array, last: Array, checker: SceneChecker, held: Held | None
+    ) -> Array:
+        """Return poses of the lattice between two configurations, (n, 3)."""
+        root, goal = self._nearest(np.array([first[:3], last[:3]])).tolist()
+        nodes = checker.way(first, self._lattice, goal, root, held)
+        return self.poses[nodes[::-1]]
 
     def _most_open(self) -> int:
         """Return the pose farthest from where the robot cannot turn in place."""
@@ -168,12 +121,10 @@ class Floor:
         cell = int(room.argmax())
         return cell * self.shape[2]
 
-    def _joined(
-        self, checker: SceneChecker, is_free: NDArray[np.bool_]
-    ) -> tuple[Ints, Array]:
-        """Return pairs of neighbours (e, 2) that are free midway, and their lengths."""
+    def _joined(self) -> Lattice:
+        """Return the free poses with the free ways between them."""
         edges = pairs(self.shape)
-        edges = edges[is_free[edges].all(1)]
+        edges = edges[self.is_free[edges].all(1)]
         a, b = self.poses[edges[:, 0]], self.poses[edges[:, 1]].copy()
         b[:, 2] = near(b[:, 2], a[:, 2])
         away = np.hypot(*(b - a)[:, :2].T)
@@ -182,24 +133,14 @@ class Floor:
         is_joined = away > 0
         turns = np.flatnonzero(~is_joined)
         middle = self.configurations((a + b)[turns] / 2)
-        is_joined[turns] = checker.are_free(middle)
-        return edges[is_joined], (away + angle * self.config.turn_m)[is_joined]
-
-    def _tree(self, root: int, is_free: NDArray[np.bool_] | None) -> tuple[Array, Ints]:
-        """Return the length of the way from `root` to each pose, and the pose before.
-
-        Only free poses are used, by default those of the lattice.
-        """
-        edges, lengths = self.edges, self.lengths
-        if is_free is not None:
-            kept = is_free[edges].all(1)
-            edges, lengths = edges[kept], lengths[kept]
+        is_joined[turns] = self.checker.are_free(middle)
+        lengths_m = (away + angle * self.config.turn_m)[is_joined]
         n = len(self.poses)
-        graph = csr_matrix((lengths, edges.T), shape=(n, n))
-        distance, before = dijkstra(
-            graph, directed=False, indices=root, return_predecessors=True
-        )
-        return distance, before.astype(np.int64)
+        graph = csr_matrix((lengths_m, edges[is_joined].T), shape=(n, n))
+        graph = (graph + graph.T).tocsr()
+        first, other = graph.indptr.astype(np.int64), graph.indices.astype(np.int64)
+        distance_m = dijkstra(graph, indices=self.start_pose)
+        return Lattice(self.poses, first, other, graph.data, distance_m)
 
     def _nearest(self, poses: Array) -> Ints:
         """Return the pose of the lattice next to each (b, 3), shape (b,)."""
@@ -208,10 +149,6 @@ class Floor:
         i, j = np.clip(cell.astype(np.int64), 0, (nx - 1, ny - 1)).T
         k = np.rint(poses[:, 2] / (2 * np.pi) * n).astype(np.int64) % n
         return (i * ny + j) * n + k
-
-    def _distances_at(self, poses: Array) -> Array:
-        """Return the length of the way to the pose next to each, shape (b,) [m]."""
-        return self.distance[self._nearest(poses)]
 
 
 def shortened(path: Array, checker: SceneChecker, held: Held | None) -> Array:

@@ -13,7 +13,7 @@ from placing.physics.bodies import Body, body_of
 from placing.rigid import Array, from_yaw
 from placing.robot.planning import Motion
 from placing.robot.truth import Truth
-from placing.scene import SceneObject
+from placing.scene import SceneObject, standing_at
 
 LINES = ("lower", "retreat", "approach", "lift")
 """Straight segments, in which hand and object may touch what is there."""
@@ -31,6 +31,8 @@ class Exact:
         self.truth, self.bodies = truth, bodies
         self.margin_m, self.reach_m = margin_m, reach_m
         self._standing: dict[str, bytes] = {}
+        self._boxes: dict[bytes, Body] = {}
+        self._contacts: dict[tuple, Array] = {}
 
     def stand(self, boxes: Mapping[str, Array]) -> None:
         """Let these boxes stand there and nothing else."""
@@ -46,25 +48,25 @@ class Exact:
                 self.truth.put(name, body, from_yaw(box[6], tuple(box[:3])))
                 self._standing[name] = wanted[name]
 
-    def contact(self, item: SceneObject, T_world_object: Array) -> Array:
+    def contact(
+        self, item: SceneObject, T_world_object: Array, boxes: Mapping[str, Array]
+    ) -> Array:
         """Return the pose at which an object touches what is below, shape (7,)."""
-        self.truth.put(item.object_id, self.bodies[item.object_id], T_world_object)
-        T = self.truth.touching_pose(item.object_id, self.reach_m)
-        self.truth.remove(item.object_id)
-        return T
+        name, at = item.object_id, standing_at(item, T_world_object)
+        near = {other: box for other, box in boxes.items() if _is_near(box, at)}
+        key = name, T_world_object.tobytes(), *(near[k].tobytes() for k in sorted(near))
+        if key not in self._contacts:
+            self.stand(near)
+            self.truth.put(name, self.bodies[name], T_world_object)
+            self._contacts[key] = self.truth.touching_pose(name, self.reach_m)
+            self.truth.remove(name)
+        return self._contacts[key]
 
     def falls(self, item: SceneObject, T_world_object: Array, release_m: float) -> bool:
-        """Return whether an object does not stay where it is put, or let go above it.
-
-        It is let go `release_m` higher.
-        """
-        name, lifted = item.object_id, T_world_object.copy()
-        lifted[6] += release_m
+        """Return whether an object does not stay that is let go above its place."""
+        name = item.object_id
         self.truth.put(name, self.bodies[name], T_world_object)
-        complaint = self.truth.settle(name, self.reach_m)
-        if not complaint and release_m > 0:
-            self.truth.put(name, self.bodies[name], lifted)
-            complaint = self.truth.settle(name, above_m=release_m)
+        complaint = self.truth.let_go(name, release_m, self.reach_m)
         self.truth.remove(name)
         return bool(complaint)
 
@@ -92,6 +94,16 @@ class Exact:
         return ""
 
     def _body(self, size_m: Array) -> Body:
-        """Return a box as a body."""
-        mesh = trimesh.creation.box(extents=size_m)
-        return body_of(mesh, DENSITY_KG_M3 * float(np.prod(size_m)), self.margin_m)
+        """Return a box as a body, the same one for the same size."""
+        key = size_m.tobytes()
+        if key not in self._boxes:
+            mesh = trimesh.creation.box(extents=size_m)
+            mass_kg = DENSITY_KG_M3 * float(np.prod(size_m))
+            self._boxes[key] = body_of(mesh, mass_kg, self.margin_m)
+        return self._boxes[key]
+
+
+def _is_near(one: Array, other: Array) -> bool:
+    """Return whether one of two boxes (7,) may be below the other."""
+    away = np.hypot(*(one[:2] - other[:2]))
+    return bool(away <= (np.hypot(*one[3:5]) + np.hypot(*other[3:5])) / 2)

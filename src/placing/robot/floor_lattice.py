@@ -45,8 +45,3 @@ def pairs(shape: tuple[int, int, int]) -> Ints:
         there = number[di:, low + dj : high + dj]
         pairs.append((here, there))
     return np.concatenate([np.column_stack([a.ravel(), b.ravel()]) for a, b in pairs])
-
-
-def near(angle: Array, other: Array) -> Array:
-    """Return angles turned by whole turns to within half a turn of others [rad]."""
-    return other + (angle - other + np.pi) % (2 * np.pi) - np.pi

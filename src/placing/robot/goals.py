@@ -19,7 +19,6 @@ from placing.robot.planning import (
     GOAL_HIT,
     NO_ARM,
     NO_PATH,
-    NO_PLACE,
     REASONS,
     TOO_WIDE,
     PlanningConfig,
@@ -29,7 +28,6 @@ from placing.robot.reach import (
     best_first,
     hands_at,
     has_hand_lines,
-    standing_places,
     straight_back,
     straight_down,
 )
@@ -70,15 +68,16 @@ class Search:
 
 
 def goals_of(
-    search: Search, floor: Floor, carrying: Carrying, config: PlanningConfig
+    search: Search,
+    bases: Array,
+    floor: Floor,
+    carrying: Carrying,
+    config: PlanningConfig,
 ) -> Iterator[Goal]:
-    """Yield goals that are free and have free straight lines, grasp by grasp."""
-    if not search.grasps:
-        return
-    search.reached(NO_PLACE)
-    bases = standing_places(floor, search.without, search.T_world_object, config)
-    if not len(bases):
-        return
+    """Yield goals that are free and have free straight lines, grasp by grasp.
+
+    `bases` (b, 3) are where the robot can stand.
+    """
     search.reached(NO_ARM)
     stand = Standing(search, floor, carrying)
     for grasp, held in search.grasps:
@@ -88,7 +87,7 @@ def goals_of(
         if not is_hand_free(search, T_world_tool, held, config):
             continue
         n_left = config.n_goals
-        for q in free_goals(search, bases, T_world_tool, held, config):
+        for q in free_goals(search, bases, T_world_tool, held):
             carry = stand.carried_to(q, held)
             if carry is None:
                 continue
@@ -172,7 +171,6 @@ def free_goals(
     bases: Array,
     T_world_tool: Array,
     held: Held,
-    config: PlanningConfig,
 ) -> Iterator[Array]:
     """Yield free solutions (4 + a,), some bases at a time; note what hits boxes."""
     checker = search.without

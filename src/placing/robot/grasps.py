@@ -21,9 +21,6 @@ from placing.sheets import Row, read_sheet
 
 Array = rigid.Array
 
-TOP_DEG = 60.0
-"""A hand whose fingers point down more steeply takes an object from the top."""
-
 
 @dataclass(frozen=True)
 class Grasp:
@@ -37,8 +34,6 @@ class Grasp:
     """Distance of the fingers when they hold it."""
     release_m: float
     """How far above contact the object is let go, so that no finger is caught."""
-    is_top: bool
-    """Whether the hand comes from above."""
 
     @property
     def T_tool_object(self) -> Array:
@@ -108,7 +103,6 @@ def _turned(row: Row, size_m: Sequence[float], tip_m: float) -> list[Grasp]:
                 T_object_tool=np.concatenate([facing(heading, pitch, roll), at]),
                 width_m=_width(row, size_m),
                 release_m=row["release_m"],
-                is_top=row["pitch_deg"] >= TOP_DEG,
             )
         )
     return grasps
@@ -125,8 +119,7 @@ def facing(heading: float, pitch: float, roll: float) -> Array:
     Its fingers point along `heading` on the floor, lowered by `pitch`; they close
     level where `roll` is zero. Angles in radians.
     """
-    about_y = np.array([np.cos(pitch / 2), 0.0, np.sin(pitch / 2), 0.0])
-    about_x = np.array([np.cos(roll / 2), np.sin(roll / 2), 0.0, 0.0])
+    about_y, about_x = rigid.about((0, 1, 0), pitch), rigid.about((1, 0, 0), roll)
     return rigid.multiply(
         rigid.multiply(rigid.yaw_quaternion(heading), about_y), about_x
     )

@@ -21,15 +21,13 @@ PAN_STEPS_RAD = np.array(sorted(np.linspace(-0.3, 0.3, 61).tolist(), key=abs))
 """Changes of the pan between two steps of a line, the smallest first."""
 
 
-def arm_solutions(
-    model: RobotModel, T_base_tool: Array, torso_m: float, n_tries: int | None = None
-) -> Array:
+def arm_solutions(model: RobotModel, T_base_tool: Array, torso_m: float) -> Array:
     """Return all solutions found within the limits, (k, a) [rad].
 
     The base is the frame on the floor. A joint without limits is between -pi and pi.
     """
     T_torso_wrist = _wrist(model, T_base_tool, torso_m)
-    n = model.settings.n_tries if n_tries is None else n_tries
+    n = model.settings.n_tries
     if model.arm is None:
         return numerical.solutions(model, T_torso_wrist, n)
     found = _solve(model.arm, T_torso_wrist, _pans(model.arm, n))
@@ -65,18 +63,12 @@ def solutions_at(
     return which[:k].copy(), out[:k].copy()
 
 
-def follow(model: RobotModel, q: Array, Ts_world_tool: Array) -> Array | None:
+def follow(model: RobotModel, q: Array, Ts_world_tool: Array) -> Array:
     """Return configurations with the tool at each pose, base and torso as in `q`.
 
-    Each is the solution nearest to the one before, (t, 4 + a); nothing is returned if
-    one pose has none, or a joint would turn more than `max_step_rad` between two.
+    Each is the solution nearest to the one before, (t, 4 + a); it ends before the first
+    pose that has none, or where a joint would turn more than `max_step_rad`.
     """
-    path = follow_far(model, q, Ts_world_tool)
-    return path if len(path) == len(Ts_world_tool) else None
-
-
-def follow_far(model: RobotModel, q: Array, Ts_world_tool: Array) -> Array:
-    """Return as `follow` the configurations of as many poses as can be followed."""
     T_world_base = rigid.homogeneous(rigid.from_yaw(q[2], (q[0], q[1], 0.0)))
     Ts = np.array([rigid.homogeneous(T) for T in Ts_world_tool])
     lift, tool = _lift_and_tool(model, q[3])

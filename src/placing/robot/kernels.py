@@ -8,6 +8,7 @@ is (3, 4), the upper rows of a homogeneous matrix.
 
 # ruff: noqa: ANN001, ANN201, ANN202 (the compiler infers types from the arguments)
 
+from heapq import heappop, heappush
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +16,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+
+CURVED = 1.2
+"""Way along an arc, and its fastest part, against the chords of its thirds."""
 
 
 class Tree(NamedTuple):
@@ -47,21 +51,6 @@ class Spheres(NamedTuple):
     """Number of the moving frame that carries the link, (s,)."""
     at_m: Array
     """Centre in that moving frame, (s, 3)."""
-
-
-class Groups(NamedTuple):
-    """One sphere around all spheres of a link: what it clears, they clear."""
-
-    first: NDArray[np.int64]
-    """Spheres of group g are `first[g]` to `first[g + 1]`, (g + 1,)."""
-    link: NDArray[np.int64]
-    """(g,)."""
-    frame: NDArray[np.int64]
-    """(g,)."""
-    at_m: Array
-    """Centre in the moving frame, (g, 3)."""
-    radius_m: Array
-    """(g,)."""
 
 
 @njit(cache=True)
@@ -163,10 +152,27 @@ class Body(NamedTuple):
     """Number of links of the robot; one more link is what is held."""
     pairs: NDArray[np.int64]
     """Links that may hit each other, (m, 2)."""
+    sphere_frame: NDArray[np.int64]
+    """Number of the frame that carries each sphere, (s,)."""
     lever_m: Array
     """Farthest that a unit of each coordinate moves a centre, (4 + a,)."""
     span_m: float
     """No sphere reaches farther from the axis of the base."""
+
+
+class Lattice(NamedTuple):
+    """Base poses on a floor, and the ways between neighbours."""
+
+    poses: Array
+    """x, y [m] and yaw [rad], (n, 3)."""
+    first: NDArray[np.int64]
+    """First neighbour of each pose, and the end of the last, (n + 1,)."""
+    other: NDArray[np.int64]
+    """Neighbours, pose by pose, (m,)."""
+    length_m: Array
+    """Of the way to each neighbour, (m,)."""
+    distance_m: Array
+    """Of each pose from one of them, infinite where there is no way, (n,)."""
 
 
 class Surroundings(NamedTuple):
@@ -194,15 +200,14 @@ def are_free(tree, body, around, configurations, touching, out):
     """Write whether each configuration (t, 4 + a) is free into `out` (t,)."""
     frames = np.empty((len(tree.axis), 3, 4))
     centres = np.empty((len(body.frame), 3))
-    known = -1  # a row whose base and torso are free, which hold what does not move
+    known = -1  # a row that is free, and so is what moves with the same joints
     for i in range(len(configurations)):
-        first = 2 if known >= 0 else 0
-        for j in range(4):
-            if known >= 0 and configurations[i, j] != configurations[known, j]:
-                first = 0
+        moved = 0, len(frames)
+        if known >= 0:
+            moved = _moved(configurations[known], configurations[i])
         forward(tree, configurations[i], frames)
         _place_links(body, frames, centres)
-        out[i] = not is_hit(body, around, frames, centres, touching, first)
+        out[i] = not is_hit(body, around, frames, centres, touching, moved)
         if out[i]:
             known = i
 
@@ -212,35 +217,123 @@ def edge_free(tree, body, around, q0, q1, touching, step_m):
     """Return whether a straight line of configurations is free, and the checks made."""
     frames = np.empty((len(tree.axis), 3, 4))
     centres = np.empty((len(body.frame), 3))
-    way, moved = 0.0, len(tree.axis)
-    for i in range(len(q0) - 1, -1, -1):
-        if q0[i] != q1[i]:
-            way += abs(q1[i] - q0[i]) * body.lever_m[i]
-            moved = max(i - 2, 0)
-    n = max(1, int(np.ceil(way / step_m)))
     stride, checks = 1, 0
+    q = np.empty(len(q0))
+    moved = 0, len(frames)
+    for i in (1, 0):  # the ends, of which only the first shows what stands still
+        checks += 1
+        forward(tree, q1 if i == 1 else q0, frames)
+        _place_links(body, frames, centres)
+        if is_hit(body, around, frames, centres, touching, moved):
+            return False, checks
+        moved = _moved(q0, q1)
+    n = n_steps(tree, body.sphere_frame, body.at_m, body.lever_m, q0, q1, step_m)
     while stride < n:
         stride *= 2
-    q = np.empty(len(q0))
-    first = 0
-    for i in (n, 0):  # the ends, of which only the first shows what stands still
-        checks += 1
-        _blend(q0, q1, i / n, q)
-        forward(tree, q, frames)
-        _place_links(body, frames, centres)
-        if is_hit(body, around, frames, centres, touching, first):
-            return False, checks
-        first = moved
     while stride > 1:  # halves first: what is in the way is found sooner
         for i in range(stride // 2, n, stride):
             checks += 1
             _blend(q0, q1, i / n, q)
             forward(tree, q, frames)
             _place_links(body, frames, centres)
-            if is_hit(body, around, frames, centres, touching, first):
+            if is_hit(body, around, frames, centres, touching, moved):
                 return False, checks
         stride //= 2
     return True, checks
+
+
+@njit(cache=True)
+def n_steps(tree, frame, at_m, lever_m, q0, q1, step_m):
+    """Return in how many steps of an edge no point moves farther than `step_m`.
+
+    Points (s, 3) are fixed in their frames. The levers of all joints add up to several
+    times what really moves, which is measured over every third of the steps that would
+    be enough by the levers.
+    """
+    way = 0.0
+    for i in range(len(q0)):
+        way += abs(q1[i] - q0[i]) * lever_m[i]
+    most = max(1, int(np.ceil(way / step_m)))
+    if most < 3:
+        return most
+    n, farthest, q = (most + 2) // 3, 0.0, np.empty(len(q0))
+    before, now = np.empty((len(tree.axis), 3, 4)), np.empty((len(tree.axis), 3, 4))
+    forward(tree, q0, before)
+    for k in range(1, n + 1):
+        _blend(q0, q1, k / n, q)
+        forward(tree, q, now)
+        before -= now
+        farthest = max(farthest, _farthest(before, frame, at_m))
+        before, now = now, before
+    return min(most, max(1, int(np.ceil(CURVED * n * np.sqrt(farthest) / step_m))))
+
+
+@njit(cache=True)
+def _farthest(way, frame, at_m):
+    """Return the largest square of how far points (s, 3) went, by frames' way."""
+    farthest = 0.0
+    for i in range(len(at_m)):
+        T, x, y, z = way[frame[i]], at_m[i, 0], at_m[i, 1], at_m[i, 2]
+        square = 0.0
+        for r in range(3):
+            square += (T[r, 0] * x + T[r, 1] * y + T[r, 2] * z + T[r, 3]) ** 2
+        farthest = max(farthest, square)
+    return farthest
+
+
+@njit(cache=True)
+def _moved(q0, q1):
+    """Return the first and the last frame whose own joint differs between two rows."""
+    first, last = len(q0), -1
+    for i in range(len(q0)):
+        if q0[i] != q1[i]:
+            first, last = min(first, max(i - 2, 0)), max(i - 2, 0)
+    return first, last
+
+
+@njit(cache=True)
+def way(tree, body, around, q, lattice, goal, root):
+    """Return numbers of poses of a lattice from `goal` to `root`; none if no way is.
+
+    Torso and arm are those of `q`, free of themselves. A* that checks a pose when it
+    goes on from it: ways of furniture alone, which are known, bound what is left.
+    """
+    n, q = len(lattice.poses), q.copy()
+    frames = np.empty((len(tree.axis), 3, 4))
+    centres = np.empty((len(body.frame), 3))
+    cost, back = np.full(n, np.inf), np.full(n, -1)
+    is_done = np.zeros(n, np.bool_)
+    left, cost[goal] = lattice.distance_m, 0.0
+    if not np.isfinite(left[goal] + left[root]):
+        return np.empty(0, np.int64)
+    todo = [(abs(left[goal] - left[root]), goal)]
+    while len(todo) > 0 and not is_done[root]:
+        _, i = heappop(todo)
+        if is_done[i]:
+            continue
+        is_done[i] = True
+        q[:3] = lattice.poses[i]
+        forward(tree, q, frames)
+        _place_links(body, frames, centres)
+        if is_hit(body, around, frames, centres, False, (0, 0)):
+            continue
+        if i == root:
+            return _chain(back, root)
+        for k in range(lattice.first[i], lattice.first[i + 1]):
+            j, length = lattice.other[k], cost[i] + lattice.length_m[k]
+            if length < cost[j]:
+                cost[j], back[j] = length, i
+                heappush(todo, (length + abs(left[j] - left[root]), j))
+    return np.empty(0, np.int64)
+
+
+@njit(cache=True)
+def _chain(back, last):
+    """Return a number and those before it in turn, in reverse."""
+    chain = [last]
+    while back[chain[-1]] >= 0:
+        chain.append(back[chain[-1]])
+    return np.array(chain[::-1])
 
 
 @njit(cache=True)
@@ -291,17 +384,20 @@ def state_hits(tree, body, around, q, touching, boxes):
         boxes[b] = True
         b = _first_box(body, around, frames, centres, touching, 0, b + 1)
     scene = _hits_scene(body, around, frames, centres, touching, 0)
-    return scene, _hits_itself(body, around, frames, centres, 0)
+    return scene, _hits_itself(body, around, frames, centres, (0, len(frames)))
 
 
 @njit(cache=True)
-def is_hit(body, around, frames, centres, touching, first):
-    """Return whether anything carried by frame `first` or a later one hits anything."""
-    n = len(around.boxes)
+def is_hit(body, around, frames, centres, touching, moved):
+    """Return whether anything hits anything since the joints of some frames moved.
+
+    `moved` are the first and the last of these; without them nothing was hit.
+    """
+    n, first = len(around.boxes), moved[0]
     return (
         _hits_scene(body, around, frames, centres, touching, first)
         or _first_box(body, around, frames, centres, touching, first, 0) < n
-        or _hits_itself(body, around, frames, centres, first)
+        or _hits_itself(body, around, frames, centres, moved)
     )
 
 
@@ -392,8 +488,8 @@ def _link_hits_box(body, around, frames, k, b, touching):
 
 
 @njit(cache=True)
-def _hits_itself(body, around, frames, centres, first):
-    """Return whether two links, one of them moved, come too near to each other."""
+def _hits_itself(body, around, frames, centres, moved):
+    """Return whether two links with a moved joint between them come too near."""
     frame, pairs, ball, margin = (
         body.frame,
         body.pairs,
@@ -406,7 +502,7 @@ def _hits_itself(body, around, frames, centres, first):
         x, y, z = centres[m, 0], centres[m, 1], centres[m, 2]
         if _square(centres, k, x, y, z) >= reach * reach:
             continue
-        if max(frame[k], frame[m]) < first:
+        if max(frame[k], frame[m]) < moved[0] or min(frame[k], frame[m]) >= moved[1]:
             continue
         args = body.cluster_ball, body.at_m, body.radius_m, body.cluster, frames
         first_k, last_k = body.link[k], body.link[k + 1]

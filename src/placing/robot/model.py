@@ -1,19 +1,19 @@
 """The robot as arrays: frames that move, links fixed in them, spheres around links."""
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from placing import rigid
 from placing.errors import BadInput
-from placing.robot.kernels import Groups, Spheres, Tree, forward
+from placing.robot.kernels import Spheres, Tree, forward
 from placing.robot.meshes import Hull
 from placing.robot.pr2_arm import Pr2Arm, pr2_arm
 from placing.robot.self_pairs import apart, self_pairs_of
 from placing.robot.settings import RobotSettings
-from placing.robot.solids import groups_of, hulls_of, spheres_of
+from placing.robot.solids import hulls_of, spheres_of
 from placing.robot.tree import check_names, fixed_values, moving_joints, tree_of
 from placing.robot.urdf import Description, Joint, read_urdf
 
@@ -30,7 +30,6 @@ class RobotModel:
     """Every link of the description, the base first."""
     tree: Tree
     spheres: Spheres
-    groups: Groups
     hulls: tuple[Hull, ...]
     """What the spheres contain; fingers as the space they sweep, in frames of links."""
     lower: Array
@@ -47,13 +46,13 @@ class RobotModel:
         return len(self.settings.chain)
 
 
-def load_robot(settings: RobotSettings, opening_m: float | None = None) -> RobotModel:
-    """Return the model of a robot whose gripper opens at most `opening_m`, or fully."""
+def load_robot(settings: RobotSettings) -> RobotModel:
+    """Return the model of a robot whose gripper may open fully."""
     description = read_urdf(settings.urdf, _folder_of(settings))
     check_names(settings, description)
     chain = moving_joints(settings, description)
     lower, upper = _limits(settings, chain)
-    widest = settings.max_opening_m if opening_m is None else opening_m
+    widest = settings.max_opening_m
     values = fixed_values(settings, description, widest)
     links, tree = tree_of(settings, description, chain, values)
     hulls = hulls_of(settings, description, links, widest)
@@ -62,14 +61,13 @@ def load_robot(settings: RobotSettings, opening_m: float | None = None) -> Robot
     if settings.srdf is None:
         # ASSUME: links whose spheres overlap while the arm is stowed are next to each
         # other by construction.
-        pairs = apart(pairs, spheres, _poses(tree, _stowed(settings)))
+        pairs = apart(pairs, spheres, link_poses(tree, _stowed(settings)))
     return RobotModel(
         settings=settings,
         description=description,
         links=links,
         tree=tree,
         spheres=spheres,
-        groups=groups_of(spheres),
         hulls=hulls,
         lower=lower,
         upper=upper,
@@ -109,12 +107,7 @@ def _stowed(settings: RobotSettings) -> Array:
     return np.array([0.0, 0.0, 0.0, settings.torso_range_m[0], *settings.stow])
 
 
-def link_poses(model: RobotModel, q: Array) -> Array:
-    """Return the frame of every link in the world, (l, 4, 4)."""
-    return _poses(model.tree, np.asarray(q, float))
-
-
-def _poses(tree: Tree, q: Array) -> Array:
+def link_poses(tree: Tree, q: Array) -> Array:
     """Return the frame of every link in the world, (l, 4, 4)."""
     frames = np.empty((len(tree.axis), 3, 4))
     forward(tree, q, frames)
@@ -131,24 +124,7 @@ def tool_pose(model: RobotModel, q: Array) -> Array:
     forward(model.tree, np.asarray(q, float), frames)
     T, fixed = np.eye(4), np.eye(4)
     T[:3], fixed[:3] = frames[-1], model.tree.T_frame_tool
-    return pose_of(T @ fixed)
-
-
-def pose_of(T: Array) -> Array:
-    """Return a homogeneous matrix as quaternion wxyz and translation, (7,)."""
-    (a, b, c, x), (d, e, f, y), (g, h, i, z) = T[:3].tolist()
-    # SOURCE: Shepperd's method; the largest of the four is found first, w if positive.
-    squares = (1 + a + e + i, 1 + a - e - i, 1 - a + e - i, 1 - a - e + i)
-    rows = (
-        (squares[0], h - f, c - g, d - b),
-        (h - f, squares[1], b + d, c + g),
-        (c - g, b + d, squares[2], f + h),
-        (d - b, c + g, f + h, squares[3]),
-    )
-    row = rows[max(range(4), key=squares.__getitem__)]
-    sign = -1.0 if row[0] < 0 else 1.0
-    scale = sign / math.sqrt(sum(value * value for value in row))
-    return np.array([*(scale * value for value in row), x, y, z])
+    return rigid.from_homogeneous(T @ fixed)
 
 
 def _closed_form(

@@ -88,5 +88,3 @@ class Refusal:
     """One of `REASONS`."""
     blockers: tuple[str, ...]
     """Objects that stand there and are to blame, sorted; none if nothing helps."""
-    details: str = ""
-    """What was hit, where one thing was."""

@@ -19,7 +19,7 @@ from placing.rigid import Array
 from placing.robot.checker import Held, SceneChecker
 from placing.robot.driving import Floor
 from placing.robot.grasps import Grasp
-from placing.robot.inverse import follow_far, solutions_at
+from placing.robot.inverse import follow, solutions_at
 from placing.robot.model import RobotModel, tool_pose
 from placing.robot.planning import PlanningConfig
 
@@ -102,8 +102,7 @@ def _seen_from(poses: Array, T_world_tool: Array) -> Array:
 def _near_to(arms: Array, other: tuple[float, ...], model: RobotModel) -> Array:
     """Return solutions (k, a) with endless joints turned to less than half a turn."""
     endless = ~np.isfinite(model.upper[4:])
-    near = np.asarray(other) + rigid.wrap(arms - np.asarray(other))
-    return np.where(endless, near, arms)
+    return np.where(endless, rigid.near(arms, np.asarray(other)), arms)
 
 
 def best_first(rows: Array, carry: tuple[float, ...]) -> Array:
@@ -209,4 +208,4 @@ def _line(
     n = round(length_m / config.step_m)
     Ts = np.repeat(tool_pose(checker.model, goal)[None], n + 1, axis=0)
     Ts[:, 4:] += np.arange(n + 1)[:, None] * config.step_m * direction
-    return follow_far(checker.model, goal, Ts)
+    return follow(checker.model, goal, Ts)

@@ -51,8 +51,6 @@ class RobotSettings:
     """Values of the joints of the gripper; values between open it partly."""
     max_opening_m: float
     """Distance between the fingers at `gripper_open`."""
-    finger_length_m: float
-    """How far an object may reach from the finger tips towards the palm."""
     stow: tuple[float, ...]
     """Arm while the base drives with nothing held."""
     carry: tuple[float, ...]

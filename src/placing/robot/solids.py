@@ -1,13 +1,11 @@
 """What a robot takes up: convex solids of its links, and spheres around them."""
 
-from itertools import pairwise
-
 import numpy as np
 from numpy.typing import NDArray
 
 from placing.errors import BadInput
 from placing.robot.covering import cover
-from placing.robot.kernels import Groups, Spheres, Tree
+from placing.robot.kernels import Spheres, Tree
 from placing.robot.meshes import Hull, hull_of, hull_of_points
 from placing.robot.settings import RobotSettings
 from placing.robot.tree import carried, fixed_values
@@ -93,22 +91,3 @@ def _bulge(settings: RobotSettings, frame: int, hull: Hull) -> float:
     if hull.link in settings.gripper_links:
         limits = settings.gripper_bulge_m
     return float(np.clip(settings.bulge_share * size, *limits))
-
-
-def groups_of(spheres: Spheres) -> Groups:
-    """Return one sphere around the spheres of each link, in their order."""
-    cuts = np.flatnonzero(np.diff(spheres.link, prepend=-1, append=-1))
-    middles, radii = [], []
-    for first, last in pairwise(cuts):
-        at, radius = spheres.at_m[first:last], spheres.radius_m[first:last, None]
-        middle = (np.min(at - radius, axis=0) + np.max(at + radius, axis=0)) / 2
-        middles.append(middle)
-        radii.append(np.max(np.linalg.norm(at - middle, axis=1) + radius[:, 0]))
-    first = cuts[:-1]
-    return Groups(
-        first=cuts.astype(np.int64),
-        link=spheres.link[first].copy(),
-        frame=spheres.frame[first].copy(),
-        at_m=np.array(middles),
-        radius_m=np.array(radii),
-    )

@@ -9,31 +9,33 @@ import math
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pybullet
-from numpy.typing import NDArray
 
 from placing import rigid
 from placing.physics.arrangements import unrest
 from placing.physics.bodies import Body, Piece
 from placing.physics.putting_down import put_down
 from placing.physics.settling import SettleConfig, settle
-from placing.physics.simulator import add_body, add_fixed, new_world
+from placing.physics.simulator import (
+    add_body,
+    add_fixed,
+    near_pairs,
+    new_world,
+    overlaps,
+)
 from placing.rigid import Array
-from placing.robot.checker import CheckerConfig, Held, levers
-from placing.robot.kernels import Spheres, Tree, sphere_centres
+from placing.robot.checker import CheckerConfig, levers
+from placing.robot.kernels import Spheres, Tree, n_steps
 from placing.robot.model import RobotModel, tool_pose
 from placing.robot.tree import fixed_values
 
 AWAY_M = 100.0
-"""Where the robot waits while an object is put down without it."""
-CURVED = 1.2
-"""Way along an arc, and its fastest part, against the chords of its thirds."""
-BLOCK = 8
-"""Cells of a cloud along each edge of a piece: what is far away costs nothing."""
+"""Where the robot waits while an object is put down, and what is not in the scene."""
+APART_M = 5.0
+"""Distance of two bodies that are not in the scene."""
 
 
 class Truth:
@@ -54,6 +56,7 @@ class Truth:
         self._config, self._settling = config, settling
         self._stack = ExitStack()
         self._standing: dict[str, tuple[int, Body, Array]] = {}
+        self._made: dict[tuple[str, int], tuple[int, Body]] = {}
         gripper = set(model.settings.gripper_links)
         self._gripper = gripper
         self._lever_m = levers(model)
@@ -125,15 +128,19 @@ class Truth:
     def put(self, object_id: str, body: Body, T_world_object: Array) -> None:
         """Let an object stand at a pose, or move it there."""
         if object_id not in self._standing:
-            i = add_body(self._world, object_id, body, T_world_object)
-            self._standing[object_id] = (i, body, T_world_object)
+            key = object_id, id(body)
+            if key not in self._made:
+                i = add_body(self._world, object_id, body, T_world_object)
+                # The body is kept so that no other one gets its number.
+                self._made[key] = (i, body)
+            self._standing[object_id] = (self._made[key][0], body, T_world_object)
         self._move(object_id, T_world_object)
 
     def remove(self, object_id: str) -> None:
-        """Take an object out of the world."""
+        """Take an object out of the scene; it waits for the next time far below."""
         i, _, _ = self._standing.pop(object_id)
-        pybullet.removeBody(i, self._client)
-        del self._world.names[i]
+        away = (APART_M * i, 0.0, -AWAY_M)
+        pybullet.resetBasePositionAndOrientation(i, away, (0, 0, 0, 1), self._client)
 
     def hits(
         self,
@@ -198,18 +205,20 @@ class Truth:
         self._standing[object_id] = (i, body, T)
         return T
 
-    def settle(self, object_id: str, reach_m: float = 0.0, above_m: float = 0.0) -> str:
-        """Return why an object does not stay where it stands; empty if it stays.
+    def let_go(self, object_id: str, above_m: float, reach_m: float) -> str:
+        """Return why an object does not stay that is let go above where it stands.
 
-        It is let go among the furniture and all else that stands; `reach_m` as in
-        `physics.settling.settle`. By `above_m` it may drop beside what it may move. The
-        world of the exact check is left as it is.
+        Empty if it comes to rest where it stands now, among the furniture and all else
+        that stands. Let go at no height, it is put down before, as `settle` does it
+        with `reach_m`. The world of the exact check is left as it is.
         """
         bodies = {k: (body, T) for k, (_, body, T) in self._standing.items()}
         near = _near(bodies, object_id, self._settling.near_m)
-        settled = settle(self._pieces, near, self._settling, reach_m)
-        most_m = self._settling.max_moved_m + above_m
-        return unrest(settled[object_id], replace(self._settling, max_moved_m=most_m))
+        body, T = bodies[object_id]
+        near[object_id] = body, T + np.array([0, 0, 0, 0, 0, 0, above_m])
+        reach_m = 0.0 if above_m > 0 else reach_m
+        settled = settle(self._pieces, near, self._settling, reach_m, {object_id: T})
+        return unrest(settled[object_id], self._settling)
 
     def _set(self, q: Array) -> None:
         """Move the robot to a configuration."""
@@ -239,28 +248,26 @@ class Truth:
     def _robot_hits(self, held_id: str | None) -> set[str]:
         """Return what the robot overlaps with, but for what its gripper holds."""
         found = set()
-        for contact in pybullet.getContactPoints(
-            bodyA=self._robot, physicsClientId=self._client
-        ):
-            if contact[8] > 0:
-                continue
-            link, other = self._links[contact[3]], contact[2]
+        for pair in near_pairs(self._world, self._robot):
+            link, other = self._links[pair[0]], pair[1]
             if other == self._robot:
-                found.add("/".join(sorted((link, self._links[contact[4]]))))
+                hit = "/".join(sorted((link, self._links[pair[2]])))
+            elif link in self._gripper and self._world.names[other] == held_id:
                 continue
-            name = self._world.names[other]
-            if not (name == held_id and link in self._gripper):
-                found.add(f"{link}/{name}")
+            else:
+                hit = f"{link}/{self._world.names[other]}"
+            if hit not in found and overlaps(self._world, self._robot, pair):
+                found.add(hit)
         return found
 
     def _held_hits(self, held_id: str, depth_m: float) -> set[str]:
-        """Return what a held object overlaps with by more than `depth_m`."""
+        """Return what a held object overlaps with by at least `depth_m`."""
         i = self._standing[held_id][0]
-        contacts = pybullet.getContactPoints(bodyA=i, physicsClientId=self._client)
         return {
-            f"{held_id}/{self._world.names[contact[2]]}"
-            for contact in contacts
-            if contact[2] != self._robot and contact[8] <= -depth_m
+            f"{held_id}/{self._world.names[pair[1]]}"
+            for pair in near_pairs(self._world, i)
+            if pair[1] != self._robot
+            and any(o.depth_m >= depth_m for o in overlaps(self._world, i, pair))
         }
 
 
@@ -289,27 +296,10 @@ def steps(
     rows = np.asarray(path, float)
     yield 0, rows[0]
     for n, (q0, q1) in enumerate(pairwise(rows)):
-        n_steps = _n_steps(q0, q1, tree, spheres, lever_m, step_m)
-        for k in range(1, n_steps + 1):
-            yield n, q0 + k / n_steps * (q1 - q0)
-
-
-def _n_steps(
-    q0: Array, q1: Array, tree: Tree, spheres: Spheres, lever_m: Array, step_m: float
-) -> int:
-    """Return in how many steps no centre moves farther than `step_m`.
-
-    The levers of all joints add up to several times what really moves, which is
-    measured over every third of the steps that would be enough by the levers.
-    """
-    most = max(1, int(np.ceil(np.abs(q1 - q0) @ lever_m / step_m)))
-    n = -(-most // 3)
-    at = np.empty((n + 1, len(spheres.at_m), 3))
-    for k in range(n + 1):
-        q = q0 + k / n * (q1 - q0)
-        sphere_centres(tree, spheres, q, at[k])
-    farthest = np.linalg.norm(np.diff(at, axis=0), axis=2).max()
-    return max(1, int(np.ceil(CURVED * n * farthest / step_m)))
+        args = tree, spheres.frame, spheres.at_m, lever_m, q0, q1, step_m
+        n_moves = n_steps(*args)
+        for k in range(1, n_moves + 1):
+            yield n, q0 + k / n_moves * (q1 - q0)
 
 
 def _near(
@@ -329,47 +319,3 @@ def _near(
         if np.all(other_low <= high + near_m) and np.all(other_high >= low - near_m):
             near[name] = bodies[name]
     return near
-
-
-def pieces_of_cloud(points_m: NDArray, cell_m: float) -> dict[str, tuple[Piece, ...]]:
-    """Return the pieces of a scene that is known by its cloud (p, 3) alone [m].
-
-    A box per cell, as high as its points: a table top is as high as it was scanned.
-    """
-    points = np.asarray(points_m, float)
-    cells = np.floor(points / cell_m).astype(np.int64)
-    cells, which = np.unique(cells, axis=0, return_inverse=True)
-    low: Array = (cells * cell_m).astype(np.float64)
-    high: Array = (cells * cell_m + cell_m).astype(np.float64)
-    z = points[:, 2]
-    low[:, 2], high[:, 2] = np.inf, -np.inf
-    np.minimum.at(low[:, 2], which, z)
-    np.maximum.at(high[:, 2], which, z)
-    _, block = np.unique(cells // BLOCK, axis=0, return_inverse=True)
-    order = np.argsort(block, kind="stable")
-    groups = np.split(order, np.flatnonzero(np.diff(block[order])) + 1)
-    return {"scan": tuple(_boxes(low[group], high[group]) for group in groups)}
-
-
-def _boxes(low: Array, high: Array) -> Piece:
-    """Return boxes between corners (b, 3) as one piece of triangles."""
-    corner = np.indices((2, 2, 2)).reshape(3, 8).T.astype(bool)  # (8, 3)
-    vertices = np.where(corner, high[:, None], low[:, None])  # (b, 8, 3)
-    # ASSUME: a surface of points has the thickness of a sheet of paper.
-    vertices[:, :, 2] -= np.where(corner[:, 2], 0.0, 1e-4)
-    faces = (np.arange(len(low)) * 8)[:, None, None] + BOX_FACES
-    return Piece(vertices.reshape(-1, 3), faces.reshape(-1, 3), False)
-
-
-BOX_FACES = np.array(
-    [
-        *([0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1]),
-        *([2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]),
-    ]
-)
-"""Triangles of a box whose corners are numbered with z fastest."""
-
-
-def held_of(held: Held | None) -> tuple[str | None, Array | None]:
-    """Return the arguments that the exact check wants for what the planner holds."""
-    return (None, None) if held is None else (held.object_id, held.T_tool_object)

@@ -147,7 +147,7 @@ def shelving(
     return parts, supports
 
 
-def top_patch(size_m: Size, softness: float = 0.0) -> list[Support]:
+def top_patch(size_m: Size) -> list[Support]:
     """Return the whole top of a box of this size as a support."""
     x, y, z = extent(size_m)
-    return patch("top", x, y, z[1], inf, softness)
+    return patch("top", x, y, z[1], inf)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from placing.errors import unknown
+from placing.errors import BadInput, unknown
 from placing.shapes import (
     dishes,
     food,
@@ -82,7 +82,13 @@ def object_shape(shape: str, size_m: tuple[float, float, float]) -> Shape:
     """Return an object shape that fills the box of `size_m` about the origin."""
     if shape not in OBJECTS:
         raise unknown("object shape", shape, list(OBJECTS))
-    mesh = mesh_of(OBJECTS[shape](*size_m), size_m)
+    solid = OBJECTS[shape](*size_m)
+    if solid.manifold.is_empty():
+        raise BadInput(
+            f"object shape {shape!r}: size_m is {list(size_m)}; expected a size in "
+            "which all parts of the shape have room"
+        )
+    mesh = mesh_of(solid, size_m)
     return Shape(mesh, (_top(size_m),) if shape in FLAT_TOPS else ())
 
 

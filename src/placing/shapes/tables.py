@@ -129,11 +129,11 @@ def table(size_m: Size) -> Shape:
 
 
 def _board_on_legs(
-    size_m: Size, colour: Colour, side: float, board: float = 0.03, inset: float = 0.04
+    size_m: Size, colour: Colour, side: float, inset: float = 0.04
 ) -> list[Part]:
     """Return a board as large as the size on four legs."""
     x, y, z = extent(size_m)
-    under = z[1] - min(board, 0.3 * z[1])
+    under = z[1] - min(0.03, 0.3 * z[1])
     parts = [box(x, y, (under, z[1]), colour)]
     return parts + legs(
         shrink(x, inset), shrink(y, inset), (0, under), side, colour, 0.6

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from placing.errors import unknown
 from placing.scene import (
@@ -16,8 +15,6 @@ from placing.thor.items import Item, read_item
 from placing.thor.objects import hold, name_objects, place, to_object
 from placing.thor.types import ThorType
 from placing.thor.walls import HEIGHT_M, MARGIN_M, outline_of, windows
-
-Array = NDArray[np.float64]
 
 
 def read_layout(data: ThorData, scene: str, types: dict[str, ThorType]) -> Layout:

@@ -6,6 +6,8 @@ import numpy as np
 
 from placing.scene import Array, Layout
 
+CELL_M = 0.6
+
 
 def likeness(a: Layout, b: Layout) -> float:
     """Return the share of furniture that is alike in two rooms, turned or mirrored."""
@@ -23,10 +25,10 @@ def symmetries() -> list[Array]:
     return [*turns, *(t @ mirror for t in turns)]
 
 
-def signature(layout: Layout, turn: Array, cell_m: float = 0.6) -> Counter:
+def signature(layout: Layout, turn: Array) -> Counter:
     """Return how often each kind of furniture stands in each cell about the middle."""
     low, high = layout.outline_m.min(0), layout.outline_m.max(0)
     places = [p.T_world_furniture[4:6] - (low + high) / 2 for p in layout.furniture]
-    cells = np.round(np.array(places) @ turn.T / cell_m).astype(int)
+    cells = np.round(np.array(places) @ turn.T / CELL_M).astype(int)
     kinds = [piece.kind for piece in layout.furniture]
     return Counter(zip(kinds, *cells.T.tolist(), strict=True))
