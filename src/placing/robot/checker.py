@@ -207,9 +207,7 @@ class SceneChecker:
 
     def _wrists(self, Ts_world_tool: Array) -> Array:
         """Return the last frame of the arm with the tool at (n, 4, 4), (n, 3, 4)."""
-        tool = np.eye(4)
-        tool[:3] = self.model.tree.T_frame_tool
-        return np.ascontiguousarray((Ts_world_tool @ np.linalg.inv(tool))[:, :3])
+        return np.ascontiguousarray((Ts_world_tool @ self.model.T_tool_frame)[:, :3])
 
     def _count(self, n: int) -> None:
         """Add to the number of checks."""

@@ -33,7 +33,7 @@ from placing.robot.reach import (
 )
 
 N_TOGETHER = 16
-"""Base poses tried together."""
+"""Base poses tried together at first; each time twice as many as before."""
 
 
 @dataclass
@@ -173,9 +173,10 @@ def free_goals(
     held: Held,
 ) -> Iterator[Array]:
     """Yield free solutions (4 + a,), some bases at a time; note what hits boxes."""
-    checker = search.without
-    for first in range(0, len(bases), N_TOGETHER):
-        rows = hands_at(checker, bases[first : first + N_TOGETHER], T_world_tool)
+    checker, left, n = search.without, bases, N_TOGETHER
+    while len(left):
+        rows = hands_at(checker, left[:n], T_world_tool)
+        left, n = left[n:], 2 * n
         if not len(rows):
             continue
         search.reached(GOAL_HIT)

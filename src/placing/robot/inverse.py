@@ -13,8 +13,8 @@ from placing.robot.model import RobotModel
 
 Array = NDArray[np.float64]
 
-MOST_SOLUTIONS = 6000
-"""Solutions of many poses together; what is left out then has hundreds beside it."""
+MOST_SOLUTIONS = 128
+"""Room for solutions, per pose; what is left out then has many beside it."""
 FINER = 4
 """Times more pans are tried when none of the first has a solution."""
 PAN_STEPS_RAD = np.array(sorted(np.linspace(-0.3, 0.3, 61).tolist(), key=abs))
@@ -45,17 +45,16 @@ def solutions_at(
     returns them, without its second, finer try.
     """
     tree, n = model.tree, model.settings.n_tries
-    lift, tool = np.tile(np.eye(4), (len(torso_m), 1, 1)), np.eye(4)
+    lift = np.tile(np.eye(4), (len(torso_m), 1, 1))
     lift[:, :3] = tree.T_parent_joint[1]
     up = tree.T_parent_joint[1][:, :3] @ tree.axis[1]
     lift[:, :3, 3] += np.asarray(torso_m)[:, None] * up
-    tool[:3] = tree.T_frame_tool
-    Ts = (np.linalg.inv(lift) @ Ts_base_tool @ np.linalg.inv(tool))[:, :3]
+    Ts = (np.linalg.inv(lift) @ Ts_base_tool @ model.T_tool_frame)[:, :3]
     if model.arm is None:
         found = [numerical.solutions(model, T, n) for T in Ts]
         which = np.repeat(np.arange(len(found)), [len(arms) for arms in found])
         return which, np.vstack([np.empty((0, model.n_arm)), *found])
-    out = np.empty((MOST_SOLUTIONS, 7))
+    out = np.empty((MOST_SOLUTIONS * len(Ts), 7))
     which = np.empty(len(out), np.int64)
     k = pr2_arm.solve_many(
         model.arm, np.ascontiguousarray(Ts), _pans(model.arm, n), out, which

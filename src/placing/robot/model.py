@@ -1,6 +1,7 @@
 """The robot as arrays: frames that move, links fixed in them, spheres around links."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -39,6 +40,13 @@ class RobotModel:
     """Pairs of links that must not touch each other, sorted, (p, 2)."""
     arm: Pr2Arm | None
     """Dimensions for the closed-form inverse, nothing for the numerical one."""
+
+    @cached_property
+    def T_tool_frame(self) -> Array:
+        """The last frame of the arm seen from the tool, (4, 4)."""
+        tool = np.eye(4)
+        tool[:3] = self.tree.T_frame_tool
+        return np.asarray(np.linalg.inv(tool), float)
 
     @property
     def n_arm(self) -> int:
