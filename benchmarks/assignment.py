@@ -18,12 +18,12 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 from tqdm import tqdm
 
-from placing.assignment import AssignmentConfig, assign
-from placing.incumbent import build
-from placing.joint_columns import Columns, conflicts, make_columns, standing_boxes
-from placing.options import Options, thin_options
+from placing.joint.assignment import AssignmentConfig, assign
+from placing.joint.incumbent import build
+from placing.joint.joint_columns import Columns, conflicts, make_columns, standing_boxes
+from placing.joint.options import Options, thin_options
+from placing.joint.stacking import StackPair, find_arcs
 from placing.rooms.file import read_yaml
-from placing.stacking import StackPair, find_arcs
 
 Array = NDArray[np.float64]
 

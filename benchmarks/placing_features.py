@@ -21,8 +21,8 @@ from tqdm import tqdm
 from placing import rigid
 from placing.clouds.cloud import CloudConfig, preprocess, sample_cloud
 from placing.clouds.ply import Cloud, read_ply
-from placing.contacts import PlacingField, rest_heights, stability_features
-from placing.object_clouds import object_cloud
+from placing.psi.contacts import PlacingField, rest_heights, stability_features
+from placing.psi.object_clouds import object_cloud
 from placing.rooms.file import read_yaml
 from placing.scene import SceneObject
 from placing.seeds import generator

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from questions import Question
 from scipy.special import i0e
 
-from placing.potential import MIN_DISTANCE_M, Theta
+from placing.people.potential import MIN_DISTANCE_M, Theta
 
 Array = NDArray[np.float64]
 

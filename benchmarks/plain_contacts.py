@@ -4,17 +4,17 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from placing import contact_kernels as kernels
 from placing import rigid
-from placing.object_clouds import ObjectCloud
-from placing.object_grids import (
+from placing.psi import contact_kernels as kernels
+from placing.psi.object_clouds import ObjectCloud
+from placing.psi.object_grids import (
     SHAPE_FEATURES,
     around,
     object_grid,
     shape_features,
     spread_points,
 )
-from placing.placing_field import PlacingField
+from placing.psi.placing_field import PlacingField
 
 Array = NDArray[np.float64]
 

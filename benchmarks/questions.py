@@ -12,10 +12,10 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from placing import dpmm
-from placing.human import HumanPoses, headings, prior_of
-from placing.potential import Theta, log_psi_human
-from placing.valid_poses import neighbours_first
+from placing.people import dpmm
+from placing.people.human import HumanPoses, headings, prior_of
+from placing.people.potential import Theta, log_psi_human
+from placing.people.valid_poses import neighbours_first
 
 Array = NDArray[np.float64]
 

@@ -23,10 +23,10 @@ from numpy.typing import NDArray
 from questions import Question, ask, full_scene
 from tqdm import tqdm
 
-from placing import dpmm, gibbs
 from placing.artifacts.features import read_features
-from placing.diagnostics import rhat_and_ess
-from placing.potential import log_psi_human
+from placing.people import dpmm, gibbs
+from placing.people.diagnostics import rhat_and_ess
+from placing.people.potential import log_psi_human
 
 Array = NDArray[np.float64]
 Table = list[dict[str, Any]]

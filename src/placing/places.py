@@ -15,8 +15,8 @@ from placing.areas.finder import PIN_RADIUS_M
 from placing.areas.outlines import heal
 from placing.candidates import OPEN_M, Candidates, CandidatesConfig
 from placing.clouds.ply import Cloud
+from placing.people.valid_poses import lattice
 from placing.scene import PlacingArea
-from placing.valid_poses import lattice
 
 Array = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ from math import factorial, prod
 
 import numpy as np
 
-from placing import dpmm
+from placing.people import dpmm
 
 
 def partitions(items):

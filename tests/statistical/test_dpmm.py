@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from enumeration import enumerate_all, iid_variation, pack, scene_of, variation
 
-from placing import dpmm
+from placing.people import dpmm
 
 N_OBJECTS = 5
 N_POSES = 90

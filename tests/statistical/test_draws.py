@@ -6,7 +6,7 @@ from enumeration import scene_of
 from numba import njit
 from scipy.stats import chi2
 
-from placing import gibbs
+from placing.people import gibbs
 
 N_DRAWS = 100_000
 MEMBERS = ([0], [1, 4], [0, 2, 3], [0, 1, 2, 3, 4])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-from placing import gibbs
+from placing.people import gibbs
 
 N_OBJECTS, N_POSES, N_VALUES = 4, 70, 5
 N_DRAWS, THIN = 12_000, 4

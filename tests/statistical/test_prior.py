@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from placing import dpmm
+from placing.people import dpmm
 
 N_SAMPLES = 20_000
 Q = 70

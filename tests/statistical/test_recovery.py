@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from placing.dpmm import DpmmConfig
-from placing.fitting import FittingConfig
-from placing.learning import Example, LearningConfig, learn_theta
-from placing.offsets import find_spots
-from placing.potential import Theta
+from placing.learning.fitting import FittingConfig
+from placing.learning.theta import Example, LearningConfig, learn_theta
+from placing.people.dpmm import DpmmConfig
+from placing.people.offsets import find_spots
+from placing.people.potential import Theta
 
 SAMPLING = DpmmConfig("exact_birth", 1.0, 8, 1, 0, 1)
 CONFIG = LearningConfig(30, 5, 5, 100, 3)

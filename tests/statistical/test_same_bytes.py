@@ -9,7 +9,8 @@ import pytest
 PROGRAM = """
 import hashlib
 import numpy as np
-from placing import dpmm, seeds
+from placing import seeds
+from placing.people import dpmm
 
 rng = np.random.default_rng(0)
 rows = rng.random((6, 500), np.float32)

@@ -3,25 +3,25 @@
 import numpy as np
 
 from placing import rigid
-from placing.baselines import FEATURES_OF, BaselinesConfig, learn_histograms
 from placing.candidates import Candidates, CandidatesConfig
 from placing.clouds.ply import Cloud
-from placing.decision import DecisionConfig
-from placing.diagnostics import DiagnosticsConfig
-from placing.dpmm import DpmmConfig
-from placing.examples import baseline_values, examples_of
-from placing.fitting import FittingConfig
-from placing.human import HumanPoses
-from placing.lattice import ArrangingConfig
-from placing.learned import Learned
-from placing.learning import LearningConfig, learn_theta
-from placing.likelihoods import nearest_places
-from placing.object_context import ObjectContextConfig, learn_relations
+from placing.learning.examples import baseline_values, examples_of
+from placing.learning.fitting import FittingConfig
+from placing.learning.learned import Learned
+from placing.learning.likelihoods import nearest_places
+from placing.learning.theta import LearningConfig, learn_theta
+from placing.methods.baselines import FEATURES_OF, BaselinesConfig, learn_histograms
+from placing.methods.decision import DecisionConfig
+from placing.methods.object_context import ObjectContextConfig, learn_relations
+from placing.methods.scene_model import SceneModel, Settings
+from placing.people.diagnostics import DiagnosticsConfig
+from placing.people.dpmm import DpmmConfig
+from placing.people.human import HumanPoses
+from placing.people.lattice import ArrangingConfig
+from placing.people.valid_poses import PosesConfig, valid_poses
 from placing.places import find_candidates
 from placing.scene import Arrangement, Placement, PlacingArea, Scene, SceneObject
-from placing.scene_model import SceneModel, Settings
 from placing.seeds import generator
-from placing.valid_poses import PosesConfig, valid_poses
 
 SETTINGS = Settings(
     CandidatesConfig(0.05, 8, 0.7, 0.05),

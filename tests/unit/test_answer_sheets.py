@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from study import study_model
 
-from placing.answer_sheets import COLUMNS, EXPLAINED, Sheets
-from placing.answering import Asked
 from placing.artifacts.formats import write_json
 from placing.artifacts.tuning import read_tuning
 from placing.errors import BadArtifact
-from placing.learned import Choices
-from placing.likelihoods import ScoringConfig
-from placing.methods import METHODS
-from placing.offering import OfferingConfig
+from placing.learning.learned import Choices
+from placing.learning.likelihoods import ScoringConfig
+from placing.methods.answering import Asked
+from placing.methods.names import METHODS
+from placing.plans.offering import OfferingConfig
 from placing.seeds import generator
+from placing.tables.answer_sheets import COLUMNS, EXPLAINED, Sheets
 from placing.tasks import questions
 
 RANKS = {method: np.linspace(0.05, 1, 30) for method in METHODS}

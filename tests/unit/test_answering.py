@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from study import SETTINGS, study_model
 
-from placing import dpmm
-from placing.answering import NO_EXAMPLE, NO_PLACE, NO_POSE, Asked
-from placing.fitting import BROAD
-from placing.learned import Choices, Learned
-from placing.methods import METHODS
-from placing.scene_model import SceneModel
+from placing.learning.fitting import BROAD
+from placing.learning.learned import Choices, Learned
+from placing.methods.answering import NO_EXAMPLE, NO_PLACE, NO_POSE, Asked
+from placing.methods.names import METHODS
+from placing.methods.scene_model import SceneModel
+from placing.people import dpmm
 from placing.seeds import generator
 from placing.tasks import questions
 

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from study import SETTINGS, area, plane, study_scene
 
-from placing.area_descriptors import (
+from placing.clouds.ply import Cloud
+from placing.places import find_candidates
+from placing.psi.area_descriptors import (
     AREA_DESCRIPTORS,
     N_DIRECTIONS,
     NEAR_M,
     describe_areas,
     without_softness,
 )
-from placing.clouds.ply import Cloud
-from placing.places import find_candidates
 
 
 def wall(x, y, z):

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from placing import arranging
-from placing.arranging import UseOfObject
 from placing.candidates import FEATURES, Candidates
-from placing.correlation import separate
-from placing.human import HumanPoses
-from placing.lattice import ArrangingConfig, Lattice
-from placing.potential import Theta, height_factor, log_psi_human, log_psi_ori
+from placing.methods import arranging
+from placing.methods.arranging import UseOfObject
+from placing.people.correlation import separate
+from placing.people.human import HumanPoses
+from placing.people.lattice import ArrangingConfig, Lattice
+from placing.people.potential import Theta, height_factor, log_psi_human, log_psi_ori
 
 THETA = Theta(-0.4, 0.5, 0.3, 2.0, -0.2, 0.3, 3.0, 1.5)
 HALF_HEIGHT = 0.1

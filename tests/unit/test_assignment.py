@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 import shapely
 
-from placing.assignment import AssignmentConfig, assign
-from placing.options import Options
-from placing.stacking import StackPair, footprints, overhangs, stacked_boxes
+from placing.joint.assignment import AssignmentConfig, assign
+from placing.joint.options import Options
+from placing.joint.stacking import StackPair, footprints, overhangs, stacked_boxes
 
 CONFIG = AssignmentConfig(
     n_best=200,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from placing.averages import (
+from placing.tables.averages import (
     Side,
     average,
     difference,

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from placing.baselines import (
+from placing.candidates import Candidates
+from placing.methods.baselines import (
     FEATURES_OF,
     BaselinesConfig,
     chance_density,
@@ -11,7 +12,6 @@ from placing.baselines import (
     learn_histograms,
     place_features,
 )
-from placing.candidates import Candidates
 
 AREA = (1.0, 0.7, 12.0, 0.1, 0.1, 1.0)
 SHARP = (1.0, 1e-6, 12.0, 0.1, 1e-6, 1.0)

@@ -4,8 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from placing import metrics
-from placing.claims import (
+from placing.methods.names import ORDER
+from placing.seeds import generator
+from placing.tables import metrics
+from placing.tables.claims import (
     CLAIMS,
     COLUMNS,
     CONTRADICTED,
@@ -16,9 +18,7 @@ from placing.claims import (
     check_claims,
     verdict,
 )
-from placing.claims_table import claims_markdown
-from placing.methods import ORDER
-from placing.seeds import generator
+from placing.tables.claims_table import claims_markdown
 
 CATEGORIES = ("book", "laptop", "shoe", "tv")
 

@@ -13,14 +13,14 @@ import trimesh
 from placing import rigid
 from placing.clouds.cloud import CloudConfig, preprocess, sample_cloud
 from placing.clouds.ply import Cloud
-from placing.contacts import (
+from placing.psi.contacts import (
     STABILITY_FEATURES,
     PlacingField,
     rest_heights,
     stability_features,
 )
-from placing.object_clouds import ObjectCloud, object_cloud
-from placing.object_grids import object_grid
+from placing.psi.object_clouds import ObjectCloud, object_cloud
+from placing.psi.object_grids import object_grid
 from placing.rooms.file import read_yaml
 from placing.scene import SceneObject
 from placing.shapes.appliances import slot_centres

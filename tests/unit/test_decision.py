@@ -5,7 +5,7 @@ import pytest
 from scipy.ndimage import gaussian_filter
 
 from placing.candidates import FEATURES, Candidates
-from placing.decision import DecisionConfig, Smoother, choose_places
+from placing.methods.decision import DecisionConfig, Smoother, choose_places
 
 CONFIG = DecisionConfig(0.2, 0.25)
 

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 from scipy.stats import norm, rankdata
 
-from placing.diagnostics import (
+from placing.people.diagnostics import (
     DIAGNOSTIC_COLUMNS,
     STATISTICS,
     DiagnosticsConfig,
@@ -15,12 +15,12 @@ from placing.diagnostics import (
     rhat_and_ess,
     total_variation,
 )
-from placing.diagnostics_table import (
+from placing.people.dpmm import Chains
+from placing.tables.diagnostics_table import (
     diagnostics_markdown,
     summarise_diagnostics,
     worst_scenes,
 )
-from placing.dpmm import Chains
 
 GATES = DiagnosticsConfig(1.05, 0.05, 0)
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from placing.clouds.ply import Cloud
-from placing.elbow_room import has_room
-from placing.placing_field import PlacingField
+from placing.psi.elbow_room import has_room
+from placing.psi.placing_field import PlacingField
 from placing.scene import PlacingArea
 
 SQUARE = np.array([(0, 0), (2, 0), (2, 2), (0, 2)], float)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from placing.exchanges import exchange
+from placing.joint.exchanges import exchange
 
 
 @pytest.mark.parametrize("seed", range(8))

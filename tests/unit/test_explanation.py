@@ -5,19 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from placing.arranging import UseOfObject
 from placing.candidates import FEATURES, Candidates
-from placing.explanation import (
+from placing.methods.arranging import UseOfObject
+from placing.methods.explanation import (
     EXPLANATION_COLUMNS,
     TERMS,
     Field,
     explain,
     explanation_rows,
 )
-from placing.human import HumanPoses
-from placing.lattice import ArrangingConfig, Lattice
-from placing.potential import Theta, log_psi_human
-from placing.skeleton import KINDS
+from placing.people.human import HumanPoses
+from placing.people.lattice import ArrangingConfig, Lattice
+from placing.people.potential import Theta, log_psi_human
+from placing.people.skeleton import KINDS
 
 THETA = Theta(-0.4, 0.5, 0.0, 2.0, -0.2, 0.3, 3.0, 1.5)
 YAWS = np.arange(8) * np.pi / 4

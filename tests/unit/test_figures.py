@@ -8,8 +8,8 @@ import pytest
 from matplotlib.colors import to_hex
 
 from placing.errors import BadInput, UnknownName
-from placing.figures import LABELS, METHODS, plot_figure6, save_figure
-from placing.methods import ORDER
+from placing.methods.names import ORDER
+from placing.tables.figures import LABELS, METHODS, plot_figure6, save_figure
 
 CATEGORIES = ("book", "trash_bin", "AVG")
 

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from placing.fitting import (
+from placing.learning.fitting import (
     BROAD,
     STATISTICS,
     FittingConfig,
     expected_statistics,
     fit,
 )
-from placing.potential import Theta, log_psi_human
+from placing.people.potential import Theta, log_psi_human
 
 WEAK = FittingConfig(1e-6, 50.0, 0.05, 0.02)
 DRAWN = Theta(-0.5, 0.3, 0.5, 4.0, -0.3, 0.1, 3.0, 2.0)

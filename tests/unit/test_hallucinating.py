@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from study import SETTINGS, study_model
 
-from placing.diagnostics import DiagnosticsConfig
-from placing.hallucinating import hallucinate, random_people
-from placing.scene_model import SceneModel
+from placing.methods.scene_model import SceneModel
+from placing.people.diagnostics import DiagnosticsConfig
+from placing.people.hallucinating import hallucinate, random_people
 from placing.seeds import generator
 from placing.tasks import questions
 

@@ -7,8 +7,8 @@ import pytest
 import yaml
 from study import study
 
-from placing.assignment_config import AssignmentConfig
-from placing.joint import (
+from placing.joint.assignment_config import AssignmentConfig
+from placing.joint.joint import (
     JOINT_COLUMNS,
     JointConfig,
     arrange,
@@ -16,8 +16,8 @@ from placing.joint import (
     options_of,
     stack_pairs,
 )
-from placing.joint_options import Proposals
-from placing.methods import JOINT_METHODS
+from placing.joint.joint_options import Proposals
+from placing.methods.names import JOINT_METHODS
 from placing.overlap import overlaps
 
 STUDY = Path(__file__).parents[2] / "config" / "config.yaml"

@@ -17,10 +17,10 @@ from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from placing import rigid
-from placing.joint_encoding import transforms
-from placing.joint_log import PLANAR, write_log
-from placing.joint_messages import DEFINITIONS
-from placing.planning_result import PlanningResult
+from placing.logs.joint_encoding import transforms
+from placing.logs.joint_log import PLANAR, write_log
+from placing.logs.joint_messages import DEFINITIONS
+from placing.logs.planning_result import PlanningResult
 from placing.robot.box_urdf import box_urdf
 from placing.robot.film import PlaybackConfig, durations, film, stretches
 from placing.robot.model import link_poses, load_robot

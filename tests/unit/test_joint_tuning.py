@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from study import placement, study
 
-from placing.joint_tuning import most_frequent, stack_shares, weight_nll
-from placing.likelihoods import ScoringConfig
+from placing.joint.joint_tuning import most_frequent, stack_shares, weight_nll
+from placing.learning.likelihoods import ScoringConfig
 from placing.scene import Arrangement, resting_point
 
 WEIGHTS = (0.1, 0.5, 0.9)

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from placing import rigid
-from placing.correct_places import ROOMS, read_correct_places
 from placing.dressing import standing_shape
 from placing.errors import BadInput, UnknownName
-from placing.judging import judge, supports_of
 from placing.rooms.catalogue import read_catalogue
 from placing.scene import Furniture, Layout, Placement
 from placing.shapes.furniture import FURNITURE, furniture_shape
+from placing.tables.correct_places import ROOMS, read_correct_places
+from placing.tables.judging import judge, supports_of
 
 CONFIG = Path(__file__).parents[2] / "config"
 PLACES, SUPPORTS = CONFIG / "correct_places.csv", CONFIG / "supports.csv"

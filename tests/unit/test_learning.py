@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from placing.dpmm import DpmmConfig
-from placing.fitting import BROAD, FittingConfig
-from placing.learning import Example, LearningConfig, learn_theta
-from placing.offsets import find_spots
+from placing.learning.fitting import BROAD, FittingConfig
+from placing.learning.theta import Example, LearningConfig, learn_theta
+from placing.people.dpmm import DpmmConfig
+from placing.people.offsets import find_spots
 
 CONFIG = LearningConfig(6, 5, 5, 100, 1)
 FITTING = FittingConfig(1.0, 50.0, 0.05, 0.02)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from study import study
 
-from placing.likelihoods import (
+from placing.learning.likelihoods import (
     ScoringConfig,
     fit,
     likelihood_rows,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linear_sum_assignment
 
-from placing.matching import match
+from placing.tables.matching import match
 
 
 @pytest.mark.parametrize("n", [0, 1, 2, 3, 5, 9, 14])

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from placing.metrics import ERRORS, SUMMARY_COLUMNS, errors, summarise
+from placing.tables.metrics import ERRORS, SUMMARY_COLUMNS, errors, summarise
 
 
 def test_matching_is_the_best_of_all_permutations():

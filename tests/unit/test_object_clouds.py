@@ -5,7 +5,7 @@ import pytest
 import trimesh
 
 from placing.clouds.cloud import sample_cloud
-from placing.object_clouds import FEWEST, MOST, mass_centre_of, object_cloud
+from placing.psi.object_clouds import FEWEST, MOST, mass_centre_of, object_cloud
 from placing.scene import SceneObject
 from placing.shapes.objects import object_shape
 

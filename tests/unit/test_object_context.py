@@ -9,7 +9,7 @@ from study import study
 
 from placing import rigid
 from placing.candidates import Candidates
-from placing.object_context import (
+from placing.methods.object_context import (
     BROAD_RELATION,
     Given,
     ObjectContextConfig,
@@ -19,7 +19,7 @@ from placing.object_context import (
     mix,
     pair_density,
 )
-from placing.potential import Theta
+from placing.people.potential import Theta
 from placing.scene import Arrangement, Placement, Scene, SceneObject
 
 CONFIG = ObjectContextConfig(1.0, 50.0, 0.1, 0.05, 2.0)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from placing.object_descriptors import (
+from placing.psi.object_descriptors import (
     OBJECT_DESCRIPTORS,
     appearance,
     describe_object,

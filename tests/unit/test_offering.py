@@ -7,18 +7,18 @@ import pandas as pd
 import pytest
 from study import study_model
 
-from placing.answering import Asked
 from placing.artifacts.formats import write_table
 from placing.artifacts.options import read_options
 from placing.errors import BadArtifact
-from placing.learned import Choices
-from placing.offering import (
+from placing.learning.learned import Choices
+from placing.methods.answering import Asked
+from placing.plans.offering import (
     OPTION_COLUMNS,
     OfferingConfig,
     offered_places,
     offered_rows,
 )
-from placing.robot_candidates import arranged, candidates_of, in_falling_score
+from placing.plans.robot_candidates import arranged, candidates_of, in_falling_score
 from placing.seeds import generator
 from placing.tasks import questions
 

@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from placing import dpmm
-from placing.offsets import (
+from placing.people import dpmm
+from placing.people.offsets import (
     find_offsets,
     find_spots,
     parameters_of,
     sufficient_statistics,
     weight_rows,
 )
-from placing.potential import Theta, log_psi_human
+from placing.people.potential import Theta, log_psi_human
 
 THETAS = (
     Theta(-0.4, 0.5, 0.3, 2.0, -0.2, 0.1, 3.0, 1.5),

@@ -8,8 +8,8 @@ import pytest
 import yaml
 
 from placing import rigid
-from placing.object_clouds import ObjectCloud, object_cloud
-from placing.orientations import (
+from placing.psi.object_clouds import ObjectCloud, object_cloud
+from placing.psi.orientations import (
     Orientation,
     OrientationsConfig,
     drop_of,

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import shapely
 
+from placing.joint.stacking import footprints
 from placing.overlap import covers, grown, overlaps
-from placing.stacking import footprints
 
 
 @pytest.fixture

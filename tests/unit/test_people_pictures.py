@@ -10,10 +10,10 @@ import pandas as pd
 import pytest
 from recorded import count_rows
 
-from placing import skeleton
 from placing.candidates import Candidates
 from placing.errors import PlacingError
-from placing.human import HumanPoses, prior_of
+from placing.people import skeleton
+from placing.people.human import HumanPoses, prior_of
 from placing.pictures.office import draw_arranged, draw_people, heat_of, likeliest
 from placing.pictures.office_content import PEOPLE, Figure, Office, Tables, office_of
 from placing.pictures.pages import Key, page

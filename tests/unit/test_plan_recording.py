@@ -13,9 +13,9 @@ from certified import BLOCK, CAN, CONFIG, certificate, settings
 from recorded import count_rows
 from rerun.chunk import RrdReader
 
-from placing.answer_tables import LOCATION, ORIENTATION
 from placing.clouds.ply import Cloud
 from placing.errors import BadArtifact
+from placing.methods.answer_tables import LOCATION, ORIENTATION
 from placing.pictures.robot import part_meshes
 from placing.recordings.plan import Search, Tried, phases, plan_recording, turns
 from placing.recordings.plan_blueprint import write_plan

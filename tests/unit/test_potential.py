@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy import integrate, stats
 
 from placing import rigid
-from placing.potential import (
+from placing.people.potential import (
     Theta,
     height_factor,
     log_factors,

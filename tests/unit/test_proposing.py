@@ -6,21 +6,21 @@ import numpy as np
 import pytest
 from study import study_model, study_scene
 
-from placing.area_descriptors import AREA_DESCRIPTORS
 from placing.artifacts.proposals import read_proposals, write_proposals
 from placing.candidates import fits
-from placing.contacts import STABILITY_FEATURES
 from placing.errors import BadArtifact
-from placing.joint_options import DENSITIES, ProposalConfig
-from placing.learned import Choices
-from placing.object_clouds import LookingConfig
-from placing.object_descriptors import OBJECT_DESCRIPTORS
-from placing.orientations import OrientationsConfig
-from placing.proposing import propose_for
-from placing.psi_object import PsiObject, PsiObjectConfig, box_of
+from placing.joint.joint_options import DENSITIES, ProposalConfig
+from placing.learning.learned import Choices
+from placing.psi.area_descriptors import AREA_DESCRIPTORS
+from placing.psi.contacts import STABILITY_FEATURES
+from placing.psi.object_clouds import LookingConfig
+from placing.psi.object_descriptors import OBJECT_DESCRIPTORS
+from placing.psi.orientations import OrientationsConfig
+from placing.psi.proposing import propose_for
+from placing.psi.psi_object import PsiObject, PsiObjectConfig, box_of
+from placing.psi.semantics import SemanticsModel
+from placing.psi.stability import LEAF, StabilityModel
 from placing.seeds import generator
-from placing.semantics import SemanticsModel
-from placing.stability import LEAF, StabilityModel
 
 ORIENTATIONS = OrientationsConfig(6, 3, 10.0, 5.0, (15.0,), 0.4, 0.03)
 LOOKING = LookingConfig(0.01, 0.01)

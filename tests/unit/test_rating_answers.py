@@ -9,13 +9,13 @@ import pytest
 from sklearn.metrics import cohen_kappa_score
 
 from placing.errors import BadInput
-from placing.methods import JOINT_NAMES
+from placing.methods.names import JOINT_NAMES
 from placing.rating.agreement import agreement, cohen_kappa
 from placing.rating.answers import MAX_BYTES, rated_cells, read_ratings
 from placing.rating.blinding import Blinded, blinded
 from placing.rooms.file import read_yaml
 from placing.scene import Placement, SceneObject
-from placing.table2 import table2
+from placing.tables.table2 import table2
 
 SCHEMA = read_yaml(Path(__file__).parents[2] / "workflow/schemas/ratings.schema.yaml")
 HEADER = "rater,arrangement,question,answer\n"

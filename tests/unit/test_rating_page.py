@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from placing.methods import JOINT_NAMES
+from placing.methods.names import JOINT_NAMES
 from placing.rating import close_ups, views
 from placing.rating.answers import read_ratings
 from placing.rating.blinding import Blinded

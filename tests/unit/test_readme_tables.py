@@ -5,8 +5,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from placing.metrics import AVERAGE
-from placing.readme_tables import (
+from placing.tables.metrics import AVERAGE
+from placing.tables.readme_tables import (
     execution_summary,
     table1_averages,
     table2_averages,

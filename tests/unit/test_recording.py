@@ -11,8 +11,8 @@ import pytest
 from recorded import count_rows
 from rerun.chunk import RrdReader
 
-from placing import skeleton
-from placing.diagnostics import DIAGNOSTIC_COLUMNS
+from placing.people import skeleton
+from placing.people.diagnostics import DIAGNOSTIC_COLUMNS
 from placing.recordings.blueprint import hidden
 from placing.recordings.content import Boxes, Mesh, SceneRecording, Term, Use
 from placing.recordings.words import reasons, summary

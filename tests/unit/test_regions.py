@@ -7,7 +7,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from placing.coverage import (
+from placing.errors import BadArtifact, BadInput, PlacingError
+from placing.methods.regions import (
+    REGION_LEVELS,
+    TOLERANCE,
+    calibrate,
+    ranks_of,
+    region_areas,
+)
+from placing.tables.coverage import (
     AREA_COLUMNS,
     LEVELS,
     add_areas,
@@ -15,17 +23,9 @@ from placing.coverage import (
     measure_coverage,
     read_calibration,
 )
-from placing.coverage_figure import IN_FRONT, plot_coverage
-from placing.coverage_table import coverage_markdown
-from placing.errors import BadArtifact, BadInput, PlacingError
-from placing.figures import METHODS
-from placing.regions import (
-    REGION_LEVELS,
-    TOLERANCE,
-    calibrate,
-    ranks_of,
-    region_areas,
-)
+from placing.tables.coverage_figure import IN_FRONT, plot_coverage
+from placing.tables.coverage_table import coverage_markdown
+from placing.tables.figures import METHODS
 
 TIED = np.array([0.1, 0.3, 0.1, 0.4, 0.1, 0.0])
 

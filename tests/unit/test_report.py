@@ -7,9 +7,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from placing.methods import ORDER
-from placing.metrics import SUMMARY_COLUMNS
-from placing.report import MARK, averages_by_task, figure6_markdown
+from placing.methods.names import ORDER
+from placing.tables.metrics import SUMMARY_COLUMNS
+from placing.tables.report import MARK, averages_by_task, figure6_markdown
 
 PAPER = Path(__file__).parents[2] / "config" / "paper.csv"
 

@@ -10,10 +10,9 @@ from study import study_scene
 from placing.artifacts.formats import write_table
 from placing.artifacts.plans import read_plans, write_plans
 from placing.errors import BadArtifact
-from placing.offering import OPTION_COLUMNS
 from placing.overlap import overlaps
-from placing.robot.planning import NO_ARM, NO_PLACE, REJECTED, Motion, Refusal
-from placing.robot_arranging import (
+from placing.plans.offering import OPTION_COLUMNS
+from placing.plans.robot_arranging import (
     IN_CONFLICT,
     NO_OPTION,
     NOWHERE,
@@ -22,8 +21,9 @@ from placing.robot_arranging import (
     Standing,
     arrange,
 )
-from placing.robot_candidates import Candidate
-from placing.robot_plans import INSIDE, WITH, Planned, asked_of_robot
+from placing.plans.robot_candidates import Candidate
+from placing.plans.robot_plans import INSIDE, WITH, Planned, asked_of_robot
+from placing.robot.planning import NO_ARM, NO_PLACE, REJECTED, Motion, Refusal
 from placing.scene import standing_box
 
 CONFIG = RobotPlacingConfig(n_arranged=2, n_labels=9, max_calls=200, max_steps=200)

@@ -9,12 +9,12 @@ from shapely import Polygon
 
 from placing.physics.arrangements import bodies_of, check_arrangement, fixed_of
 from placing.physics.settling import SettleConfig
-from placing.robot_candidates import Candidate
+from placing.plans.robot_candidates import Candidate
+from placing.plans.scenarios import PICKUP_TABLE, off_table
 from placing.rooms.catalogue import read_catalogue
 from placing.rooms.checks import footprint
 from placing.rooms.file import read_yaml
 from placing.rooms.reader import layout_reader
-from placing.scenarios import PICKUP_TABLE, off_table
 from placing.shapes.objects import object_shape
 
 ROOT = Path(__file__).parents[2]

@@ -8,10 +8,10 @@ import pytest
 from study import study
 
 from placing import rigid
-from placing.answer_tables import LOCATION, NO_PLACE, ORIENTATION, PLACED
-from placing.methods import LABELS
-from placing.metrics import ERRORS
-from placing.scoring import ANSWER_COLUMNS, score_scene
+from placing.methods.answer_tables import LOCATION, NO_PLACE, ORIENTATION, PLACED
+from placing.methods.names import LABELS
+from placing.tables.metrics import ERRORS
+from placing.tables.scoring import ANSWER_COLUMNS, score_scene
 from placing.tasks import questions
 
 

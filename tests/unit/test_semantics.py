@@ -9,15 +9,13 @@ import pytest
 from study import SETTINGS, area, placement, plane, study_scene
 from test_area_descriptors import cloud_of
 
-from placing.area_descriptors import AREA_DESCRIPTORS, describe_areas
 from placing.artifacts.semantics import read_semantics, write_semantics
 from placing.errors import BadArtifact
-from placing.labelled_areas import carrying_areas, label_scene, label_shares
-from placing.object_descriptors import describe_objects
 from placing.places import find_candidates
-from placing.scene import Arrangement, Scene, SceneObject
-from placing.seeds import generator
-from placing.semantics import (
+from placing.psi.area_descriptors import AREA_DESCRIPTORS, describe_areas
+from placing.psi.labelled_areas import carrying_areas, label_scene, label_shares
+from placing.psi.object_descriptors import describe_objects
+from placing.psi.semantics import (
     LabelledScene,
     SemanticsConfig,
     learn_semantics,
@@ -25,6 +23,8 @@ from placing.semantics import (
     log_psi_semantics,
     unaware,
 )
+from placing.scene import Arrangement, Scene, SceneObject
+from placing.seeds import generator
 
 CONFIG = SemanticsConfig(80, (1.0,), (10.0, 100.0), 2)
 DRINKS = (

@@ -6,9 +6,14 @@ import numpy as np
 import pytest
 from study import SETTINGS, study
 
-from placing.baselines import learn_histograms
-from placing.labelled_areas import label_shares
-from placing.semantics_table import height_shares, hit_rows, hits, tabulate_semantics
+from placing.methods.baselines import learn_histograms
+from placing.psi.labelled_areas import label_shares
+from placing.tables.semantics_table import (
+    height_shares,
+    hit_rows,
+    hits,
+    tabulate_semantics,
+)
 
 
 def slow_hits(weights, shares, k):

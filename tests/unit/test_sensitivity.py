@@ -4,10 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from placing import metrics
 from placing.seeds import generator
-from placing.sensitivity import SENSITIVITY_COLUMNS, compare_variations
-from placing.sensitivity_table import sensitivity_markdown
+from placing.tables import metrics
+from placing.tables.sensitivity import SENSITIVITY_COLUMNS, compare_variations
+from placing.tables.sensitivity_table import sensitivity_markdown
 
 SHIFTS = {"smoothing_m=0.1": 0.3, "base": 0.0, "concentration=0.3": 0.0}
 

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from placing import rigid, skeleton
+from placing import rigid
 from placing.errors import UnknownName
-from placing.skeleton import BONES, JOINTS, KINDS, SITTING
+from placing.people import skeleton
+from placing.people.skeleton import BONES, JOINTS, KINDS, SITTING
 
 
 def bone_lengths(kind: str) -> np.ndarray:

@@ -9,17 +9,17 @@ import trimesh
 from study import SETTINGS, area, study_model, study_scene
 from test_areas import AREAS, block, find
 
-from placing.answering import NO_PLACE, Asked
 from placing.areas.finder import find_areas
 from placing.candidates import Candidates, fits
 from placing.clouds.ply import Cloud
-from placing.learned import Choices
-from placing.methods import METHODS
-from placing.object_clouds import ObjectCloud
-from placing.orientations import OrientationsConfig, orientations
+from placing.learning.learned import Choices
+from placing.methods.answering import NO_PLACE, Asked
+from placing.methods.names import METHODS
+from placing.methods.scene_model import SceneModel
 from placing.places import find_candidates
+from placing.psi.object_clouds import ObjectCloud
+from placing.psi.orientations import OrientationsConfig, orientations
 from placing.scene import PlacingArea
-from placing.scene_model import SceneModel
 from placing.seeds import generator
 from placing.tasks import questions
 

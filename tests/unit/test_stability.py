@@ -10,7 +10,7 @@ import pytest
 
 from placing.artifacts.stability import read_stability, write_stability
 from placing.errors import PlacingError
-from placing.stability import (
+from placing.psi.stability import (
     StabilityConfig,
     fit_trees,
     folds_of,
@@ -18,7 +18,7 @@ from placing.stability import (
     log_psi_stability,
     sum_trees,
 )
-from placing.stability_report import (
+from placing.tables.stability_report import (
     ALL,
     NEW,
     PROTOCOLS,
@@ -183,7 +183,7 @@ def test_models_of_a_protocol_never_saw_what_they_are_asked_about(monkeypatch):
         seen.append(features[:, 0].tolist())
         return model()
 
-    monkeypatch.setattr("placing.stability_report.fit_trees", remember)
+    monkeypatch.setattr("placing.tables.stability_report.fit_trees", remember)
     features, table, _ = tried()
     for protocol in PROTOCOLS:
         seen.clear()

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from placing.assignment import CROWDED_OUT, NO_OPTION, AssignmentConfig, assign
-from placing.options import Options, thin_options
-from placing.stacking import StackPair, overhangs, stacked_boxes
+from placing.joint.assignment import CROWDED_OUT, NO_OPTION, AssignmentConfig, assign
+from placing.joint.options import Options, thin_options
+from placing.joint.stacking import StackPair, overhangs, stacked_boxes
 
 CONFIG = AssignmentConfig(
     200, 100, 0.005, 4, 0.3, 50, 0.05, 50, 1e-9, 500, 20, 10**5, 10, 30

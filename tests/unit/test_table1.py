@@ -5,12 +5,12 @@ import pandas as pd
 import pytest
 from study import study
 
-from placing.answer_tables import LOCATION, NO_PLACE, ORIENTATION, PLACED
-from placing.methods import LABELS
-from placing.metrics import AVERAGE, summarise
-from placing.robot_plans import REFUSED
-from placing.scoring import ANSWER_COLUMNS
-from placing.table1 import (
+from placing.methods.answer_tables import LOCATION, NO_PLACE, ORIENTATION, PLACED
+from placing.methods.names import LABELS
+from placing.plans.robot_plans import REFUSED
+from placing.tables.metrics import AVERAGE, summarise
+from placing.tables.scoring import ANSWER_COLUMNS
+from placing.tables.table1 import (
     CATEGORIES,
     long_table,
     paired_table,
@@ -18,7 +18,7 @@ from placing.table1 import (
     score_constraints,
     wide_table,
 )
-from placing.table1_page import recomputed, table1_markdown
+from placing.tables.table1_page import recomputed, table1_markdown
 from placing.tasks import questions
 
 PAPER = pd.read_csv("config/paper.csv")

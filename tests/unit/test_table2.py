@@ -10,13 +10,13 @@ import pytest
 
 from placing.candidates import Candidates
 from placing.errors import BadArtifact
-from placing.methods import JOINT_NAMES
+from placing.methods.names import JOINT_NAMES
 from placing.scene import Arrangement, Placement, Scene, SceneObject
-from placing.table2 import cells, score, table2
-from placing.table2_answers import answers_of, placements_of
-from placing.table2_errors import answer_errors, chance_errors, matched_error
-from placing.table2_page import paper_table, table2_markdown
-from placing.table2_scores import score_scene
+from placing.tables.table2 import cells, score, table2
+from placing.tables.table2_answers import answers_of, placements_of
+from placing.tables.table2_errors import answer_errors, chance_errors, matched_error
+from placing.tables.table2_page import paper_table, table2_markdown
+from placing.tables.table2_scores import score_scene
 
 PAPER = Path(__file__).parents[2] / "config" / "paper.csv"
 UPRIGHT = np.array([1.0, 0, 0, 0])

@@ -7,8 +7,8 @@ import pytest
 
 from placing.artifacts import theta as artifacts
 from placing.errors import BadArtifact
-from placing.fitting import BROAD
-from placing.object_context import BROAD_RELATION, Relations
+from placing.learning.fitting import BROAD
+from placing.methods.object_context import BROAD_RELATION, Relations
 
 FILES = ("dp", "height", "area", "object")
 

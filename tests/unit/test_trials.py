@@ -11,8 +11,6 @@ import yaml
 
 from placing import rigid
 from placing.clouds.cloud import CloudConfig
-from placing.object_clouds import LookingConfig
-from placing.orientations import OrientationsConfig
 from placing.physics.arrangements import bodies_of, unrest
 from placing.physics.choosing import features_of, settle_chosen
 from placing.physics.fixtures import INSTANCES, KINDS, fixture_of
@@ -29,6 +27,8 @@ from placing.physics.trials import (
     lowered,
 )
 from placing.physics.watching import watch
+from placing.psi.object_clouds import LookingConfig
+from placing.psi.orientations import OrientationsConfig
 from placing.rooms.catalogue import read_catalogue
 
 FOLDER = Path(__file__).parents[2] / "config"

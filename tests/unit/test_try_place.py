@@ -5,9 +5,9 @@ from itertools import product
 import numpy as np
 import pytest
 
-from placing.conflicts import minimal_conflict
-from placing.placing_order import Verdict
-from placing.try_place import Limits, place_most, try_place, try_place_printed
+from placing.plans.conflicts import minimal_conflict
+from placing.plans.placing_order import Verdict
+from placing.plans.try_place import Limits, place_most, try_place, try_place_printed
 
 N_WORLDS = 400
 LIMITS = Limits(max_calls=100_000, max_steps=100_000)

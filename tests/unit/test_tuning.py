@@ -7,12 +7,18 @@ import pandas as pd
 import pytest
 from study import study_model
 
-from placing.answering import Asked
-from placing.learned import Choices
-from placing.likelihoods import ScoringConfig, likelihood_rows, with_uniform
-from placing.methods import METHODS
+from placing.learning.learned import Choices
+from placing.learning.likelihoods import ScoringConfig, likelihood_rows, with_uniform
+from placing.learning.tuning import (
+    COLUMNS,
+    TuningConfig,
+    asked_of,
+    choose,
+    try_variants,
+)
+from placing.methods.answering import Asked
+from placing.methods.names import METHODS
 from placing.seeds import generator
-from placing.tuning import COLUMNS, TuningConfig, asked_of, choose, try_variants
 
 CONFIG = TuningConfig((2, 3), (0.25, 0.75), 1, 1, 5, 10)
 SCORING = ScoringConfig(0.01)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from placing import skeleton
+from placing.people import skeleton
+from placing.people.valid_poses import PosesConfig, lattice, valid_poses
 from placing.scene import PlacingArea
-from placing.valid_poses import PosesConfig, lattice, valid_poses
 
 CONFIG = PosesConfig(0.2, 0.1, 8, 0.05, 0.3, 0.8)
 

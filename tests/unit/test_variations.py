@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from study import SETTINGS, study
 
-from placing.variations import (
+from placing.learning.variations import (
     BASE,
     SensitivityConfig,
     coarser_places,

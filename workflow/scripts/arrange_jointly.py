@@ -13,15 +13,15 @@ from placing.artifacts.formats import write_table
 from placing.artifacts.joint_tuning import read_joint_tuning
 from placing.artifacts.proposals import read_proposals
 from placing.artifacts.scenes import read_scene
-from placing.assignment_config import AssignmentConfig
-from placing.joint import (
+from placing.joint.assignment_config import AssignmentConfig
+from placing.joint.joint import (
     JOINT_COLUMNS,
     JointConfig,
     arrange,
     log_scores,
     stack_pairs,
 )
-from placing.methods import JOINT_METHODS
+from placing.methods.names import JOINT_METHODS
 from placing.seeds import generator
 
 log = logging.getLogger(__name__)

@@ -9,10 +9,10 @@ import pandas as pd
 
 from command import run
 from placing.artifacts.formats import read_json, read_table
-from placing.coverage import folds_of
 from placing.errors import BadArtifact
-from placing.explanation import EXPLANATION_COLUMNS
-from placing.metrics import ERRORS, SCORE_COLUMNS
+from placing.methods.explanation import EXPLANATION_COLUMNS
+from placing.tables.coverage import folds_of
+from placing.tables.metrics import ERRORS, SCORE_COLUMNS
 
 log = logging.getLogger(__name__)
 

@@ -7,11 +7,11 @@ import pandas as pd
 
 from command import run
 from placing.artifacts.formats import read_table, write_csv
-from placing.claims import check_claims
-from placing.claims_table import claims_markdown
-from placing.metrics import SCORE_COLUMNS
-from placing.report import write_text
 from placing.seeds import generator
+from placing.tables.claims import check_claims
+from placing.tables.claims_table import claims_markdown
+from placing.tables.metrics import SCORE_COLUMNS
+from placing.tables.report import write_text
 
 log = logging.getLogger(__name__)
 

@@ -9,13 +9,13 @@ from placing.artifacts.films import write_film
 from placing.artifacts.formats import read_table, write_table
 from placing.physics.arrangements import bodies_of, fixed_of
 from placing.physics.settling import SettleConfig
+from placing.plans.robot_plans import PLAN_COLUMNS
 from placing.robot.executing import ExecutionConfig, execute
 from placing.robot.film import PlaybackConfig
 from placing.robot.settings import read_robot
-from placing.robot_plans import PLAN_COLUMNS
 from placing.rooms.file import read_yaml
 from placing.rooms.reader import layout_reader
-from placing.scenario_tables import executed
+from placing.tables.scenario_tables import executed
 
 log = logging.getLogger(__name__)
 

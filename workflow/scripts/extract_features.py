@@ -10,8 +10,8 @@ from placing.artifacts.features import write_features
 from placing.artifacts.scenes import read_scene
 from placing.candidates import CandidatesConfig
 from placing.clouds.ply import read_ply
+from placing.people.valid_poses import PosesConfig, valid_poses
 from placing.places import find_candidates
-from placing.valid_poses import PosesConfig, valid_poses
 
 log = logging.getLogger(__name__)
 

@@ -10,10 +10,10 @@ from placing.artifacts.features import read_features
 from placing.artifacts.scenes import read_scene
 from placing.artifacts.semantics import write_semantics
 from placing.clouds.ply import read_ply
-from placing.labelled_areas import label_scene
-from placing.object_clouds import LookingConfig
+from placing.psi.labelled_areas import label_scene
+from placing.psi.object_clouds import LookingConfig
+from placing.psi.semantics import LabelledScene, SemanticsConfig, learn_semantics
 from placing.seeds import generator
-from placing.semantics import LabelledScene, SemanticsConfig, learn_semantics
 
 log = logging.getLogger(__name__)
 

@@ -10,14 +10,14 @@ from tqdm import tqdm
 from command import run
 from placing.artifacts.formats import read_table, write_csv, write_table
 from placing.artifacts.stability import write_stability
-from placing.contacts import STABILITY_FEATURES
 from placing.physics.bench import Bench, BenchConfig, bench_of
 from placing.physics.choosing import choose, features_of, settle_chosen
 from placing.physics.trials import TRIAL_COLUMNS
-from placing.report import write_text
+from placing.psi.contacts import STABILITY_FEATURES
+from placing.psi.stability import Models, StabilityConfig, folds_of, learn_stability
 from placing.rooms.catalogue import read_catalogue
-from placing.stability import Models, StabilityConfig, folds_of, learn_stability
-from placing.stability_report import (
+from placing.tables.report import write_text
+from placing.tables.stability_report import (
     PROTOCOLS,
     models_without,
     report_of,

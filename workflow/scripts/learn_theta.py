@@ -12,15 +12,15 @@ from placing.artifacts.features import read_features
 from placing.artifacts.formats import write_table
 from placing.artifacts.scenes import read_scene
 from placing.artifacts.theta import write_histograms, write_relations, write_thetas
-from placing.baselines import FEATURES_OF, BaselinesConfig, learn_histograms
 from placing.candidates import Candidates
-from placing.dpmm import DpmmConfig
-from placing.examples import baseline_values, examples_of
-from placing.fitting import FittingConfig
-from placing.human import HumanPoses
-from placing.learning import LearningConfig, learn_theta
-from placing.likelihoods import nearest_places
-from placing.object_context import ObjectContextConfig, learn_relations
+from placing.learning.examples import baseline_values, examples_of
+from placing.learning.fitting import FittingConfig
+from placing.learning.likelihoods import nearest_places
+from placing.learning.theta import LearningConfig, learn_theta
+from placing.methods.baselines import FEATURES_OF, BaselinesConfig, learn_histograms
+from placing.methods.object_context import ObjectContextConfig, learn_relations
+from placing.people.dpmm import DpmmConfig
+from placing.people.human import HumanPoses
 from placing.scene import Scene
 from placing.seeds import generator
 

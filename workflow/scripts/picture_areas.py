@@ -13,11 +13,11 @@ from placing.areas.scans import ScanAreas, find_in_scan
 from placing.clouds.cloud import CloudConfig
 from placing.clouds.ply import read_ply
 from placing.errors import BadInput
-from placing.figures import save_figure
 from placing.pictures.areas import draw_areas
 from placing.rooms.file import read_yaml
 from placing.scene import PlacingArea
 from placing.schema import check
+from placing.tables.figures import save_figure
 
 ROOT = Path(__file__).parents[2]
 ENDINGS = (".png", ".svg")

@@ -5,11 +5,11 @@ from pathlib import Path
 from command import run
 from placing.artifacts.formats import read_table
 from placing.errors import unknown
-from placing.methods import JOINT_NAMES
+from placing.methods.names import JOINT_NAMES
 from placing.pictures.desk import draw_desk
 from placing.pictures.renderer import write_picture
 from placing.rooms.reader import layout_reader
-from placing.table2_answers import ANSWER_COLUMNS, placements_of
+from placing.tables.table2_answers import ANSWER_COLUMNS, placements_of
 
 PANELS = {method: JOINT_NAMES[method] for method in ("object_context", "dp")}
 SIZE = (1000, 750)

@@ -3,11 +3,11 @@
 from pathlib import Path
 
 from command import run
-from placing.answer_tables import PLACEMENT_COLUMNS, POSE_COLUMNS
 from placing.artifacts.densities import read_densities
 from placing.artifacts.features import read_features
 from placing.artifacts.formats import read_table
 from placing.artifacts.scenes import read_scene
+from placing.methods.answer_tables import PLACEMENT_COLUMNS, POSE_COLUMNS
 from placing.pictures.office import draw_arranged, draw_people
 from placing.pictures.office_content import Figure, Tables, office_of
 from placing.pictures.renderer import write_picture

@@ -15,12 +15,12 @@ from placing.artifacts.scenes import read_scene
 from placing.clouds.ply import read_ply
 from placing.errors import NoFloor
 from placing.layouts import layout_reader
+from placing.plans.robot_arranging import NOWHERE, RobotPlacingConfig
+from placing.plans.robot_plans import Planned
+from placing.plans.robot_scene import RobotConfig, placer_in, robot_of
 from placing.robot.grasps import GraspSheet, read_grasps
 from placing.robot.model import load_robot
 from placing.robot.settings import RobotSettings, read_robot
-from placing.robot_arranging import NOWHERE, RobotPlacingConfig
-from placing.robot_plans import Planned
-from placing.robot_scene import RobotConfig, placer_in, robot_of
 from placing.rooms.file import read_yaml
 
 log = logging.getLogger(__name__)

@@ -9,22 +9,22 @@ import pandas as pd
 from tqdm import tqdm
 
 from command import run
-from placing.answering import Asked
 from placing.artifacts.certificates import write_certificates
 from placing.artifacts.features import read_features
 from placing.artifacts.formats import write_table
 from placing.artifacts.scenes import read_scene
 from placing.artifacts.theta import read_learned
 from placing.clouds.ply import read_ply
-from placing.learned import Choices
+from placing.learning.learned import Choices
+from placing.methods.answering import Asked
+from placing.methods.scene_model import SceneModel, Settings
+from placing.plans.robot_plans import TRIED_COLUMNS, plan_table, rows_of, tried_rows
+from placing.plans.scenarios import ScenarioConfig, plan_scenario, world_of
 from placing.robot.grasps import read_grasps
 from placing.robot.model import load_robot
 from placing.robot.settings import read_robot
-from placing.robot_plans import TRIED_COLUMNS, plan_table, rows_of, tried_rows
 from placing.rooms.file import read_yaml
 from placing.rooms.reader import layout_reader
-from placing.scenarios import ScenarioConfig, plan_scenario, world_of
-from placing.scene_model import SceneModel, Settings
 from placing.seeds import generator
 from placing.tasks import questions
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import pandas as pd
 
 from command import run
-from placing.coverage_figure import plot_coverage
-from placing.figures import save_figure
+from placing.tables.coverage_figure import plot_coverage
+from placing.tables.figures import save_figure
 
 
 def main(table: Path, png: Path, svg: Path) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 
 from command import run
-from placing.figures import plot_figure6, save_figure
+from placing.tables.figures import plot_figure6, save_figure
 
 
 def main(table: Path, task: str, png: Path, svg: Path) -> None:

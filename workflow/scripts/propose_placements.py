@@ -14,14 +14,14 @@ from placing.artifacts.stability import read_stability
 from placing.artifacts.theta import read_learned
 from placing.artifacts.tuning import read_tuning
 from placing.clouds.ply import read_ply
-from placing.joint_options import ProposalConfig
-from placing.joint_tuning import most_frequent
-from placing.learned import Choices
-from placing.object_clouds import LookingConfig
-from placing.orientations import OrientationsConfig
-from placing.proposing import propose_for
-from placing.psi_object import PsiObject, PsiObjectConfig
-from placing.scene_model import Settings
+from placing.joint.joint_options import ProposalConfig
+from placing.joint.joint_tuning import most_frequent
+from placing.learning.learned import Choices
+from placing.methods.scene_model import Settings
+from placing.psi.object_clouds import LookingConfig
+from placing.psi.orientations import OrientationsConfig
+from placing.psi.proposing import propose_for
+from placing.psi.psi_object import PsiObject, PsiObjectConfig
 from placing.seeds import generator
 
 log = logging.getLogger(__name__)

@@ -9,9 +9,9 @@ from command import run
 from placing.artifacts.formats import read_table, write_csv
 from placing.rating.blinding import blinded, key_table
 from placing.rating.page import entries_of, page_of
-from placing.report import write_text
 from placing.rooms.reader import layout_reader
-from placing.table2_answers import ANSWER_COLUMNS
+from placing.tables.report import write_text
+from placing.tables.table2_answers import ANSWER_COLUMNS
 
 log = logging.getLogger(__name__)
 

@@ -14,8 +14,8 @@ from placing.artifacts.proposals import read_proposals
 from placing.artifacts.scenes import read_scene
 from placing.clouds.ply import read_ply
 from placing.errors import BadArtifact
-from placing.joint import JOINT_COLUMNS
-from placing.methods import JOINT_METHODS
+from placing.joint.joint import JOINT_COLUMNS
+from placing.methods.names import JOINT_METHODS
 from placing.recordings.joint import joint_recording, method_density
 from placing.recordings.joint_blueprint import write_joint
 

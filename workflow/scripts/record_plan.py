@@ -13,7 +13,8 @@ from placing.artifacts.formats import read_table
 from placing.artifacts.plans import read_plans
 from placing.artifacts.scenes import read_scene
 from placing.clouds.ply import read_ply
-from placing.joint_log import write_log
+from placing.logs.joint_log import write_log
+from placing.plans.robot_plans import TRIED_COLUMNS
 from placing.recordings.plan import Search, plan_recording
 from placing.recordings.plan_blueprint import write_plan
 from placing.recordings.plan_tables import in_order, result_of, rows_about, search_of
@@ -21,7 +22,6 @@ from placing.robot.certificates import Certificate
 from placing.robot.film import PlaybackConfig, film
 from placing.robot.model import load_robot
 from placing.robot.settings import read_robot
-from placing.robot_plans import TRIED_COLUMNS
 from placing.rooms.file import read_yaml
 
 log = logging.getLogger(__name__)

@@ -8,20 +8,20 @@ import pandas as pd
 from tqdm import tqdm
 
 from command import run
-from placing.answer_tables import PLACEMENT_COLUMNS, POSE_COLUMNS, TRACE_COLUMNS
 from placing.artifacts.densities import read_densities
 from placing.artifacts.features import read_features
 from placing.artifacts.formats import read_table
 from placing.artifacts.scenes import read_scene
 from placing.clouds.ply import read_ply
-from placing.diagnostics import DIAGNOSTIC_COLUMNS
 from placing.errors import unknown
-from placing.explanation import EXPLANATION_COLUMNS
-from placing.metrics import SCORE_COLUMNS
+from placing.methods.answer_tables import PLACEMENT_COLUMNS, POSE_COLUMNS, TRACE_COLUMNS
+from placing.methods.explanation import EXPLANATION_COLUMNS
+from placing.people.diagnostics import DIAGNOSTIC_COLUMNS
 from placing.recordings.assembly import Job, scene_recording
 from placing.recordings.content import SceneRecording
 from placing.recordings.tables import Tables
 from placing.recordings.writer import write_recording
+from placing.tables.metrics import SCORE_COLUMNS
 
 log = logging.getLogger(__name__)
 

@@ -9,18 +9,18 @@ from numpy.random import Generator
 from tqdm import tqdm
 
 from command import run
-from placing.answer_sheets import COLUMNS, Sheets
-from placing.answering import Asked
 from placing.artifacts.densities import write_densities
 from placing.artifacts.formats import write_table
 from placing.artifacts.models import read_model
 from placing.artifacts.theta import read_learned
 from placing.artifacts.tuning import read_tuning
-from placing.learned import Choices
-from placing.likelihoods import ScoringConfig
-from placing.offering import OfferingConfig
-from placing.scene_model import SceneModel, Settings
+from placing.learning.learned import Choices
+from placing.learning.likelihoods import ScoringConfig
+from placing.methods.answering import Asked
+from placing.methods.scene_model import SceneModel, Settings
+from placing.plans.offering import OfferingConfig
 from placing.seeds import generator
+from placing.tables.answer_sheets import COLUMNS, Sheets
 from placing.tasks import TASKS, questions
 
 log = logging.getLogger(__name__)

@@ -8,9 +8,9 @@ import pandas as pd
 from command import run
 from placing.artifacts.formats import read_table, write_table
 from placing.artifacts.scenes import read_scene
-from placing.likelihoods import LIKELIHOOD_COLUMNS
-from placing.metrics import SCORE_COLUMNS
-from placing.scoring import ANSWER_COLUMNS, score_scene
+from placing.learning.likelihoods import LIKELIHOOD_COLUMNS
+from placing.tables.metrics import SCORE_COLUMNS
+from placing.tables.scoring import ANSWER_COLUMNS, score_scene
 
 log = logging.getLogger(__name__)
 

@@ -11,12 +11,12 @@ from tqdm import tqdm
 
 from command import run
 from placing.artifacts.formats import read_table, write_csv
-from placing.joint import JOINT_COLUMNS
+from placing.joint.joint import JOINT_COLUMNS
 from placing.physics.arrangements import bodies_of, fixed_of
 from placing.physics.joint_check import check_joint
 from placing.physics.settling import SettleConfig
 from placing.rooms.reader import layout_reader
-from placing.table2_answers import placements_of
+from placing.tables.table2_answers import placements_of
 
 log = logging.getLogger(__name__)
 

@@ -6,7 +6,7 @@ import pandas as pd
 
 from command import run
 from placing.artifacts.formats import read_table, write_csv
-from placing.metrics import SCORE_COLUMNS, summarise
+from placing.tables.metrics import SCORE_COLUMNS, summarise
 
 
 def main(scores: tuple[Path, ...], summary: Path) -> None:

@@ -6,16 +6,16 @@ import pandas as pd
 
 from command import run
 from placing.artifacts.formats import read_json, read_table, write_csv
-from placing.coverage import (
+from placing.errors import BadInput
+from placing.tables.coverage import (
     AREA_COLUMNS,
     add_areas,
     folds_of,
     measure_coverage,
     read_calibration,
 )
-from placing.coverage_table import coverage_markdown
-from placing.errors import BadInput
-from placing.report import write_text
+from placing.tables.coverage_table import coverage_markdown
+from placing.tables.report import write_text
 
 RANK_COLUMNS = ("dataset", "task", "method", "scene", "rank")
 

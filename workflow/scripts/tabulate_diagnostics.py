@@ -6,13 +6,13 @@ import pandas as pd
 
 from command import run
 from placing.artifacts.formats import read_table, write_csv
-from placing.diagnostics import DIAGNOSTIC_COLUMNS, DiagnosticsConfig
-from placing.diagnostics_table import (
+from placing.people.diagnostics import DIAGNOSTIC_COLUMNS, DiagnosticsConfig
+from placing.tables.diagnostics_table import (
     diagnostics_markdown,
     summarise_diagnostics,
     worst_scenes,
 )
-from placing.report import write_text
+from placing.tables.report import write_text
 
 
 def main(

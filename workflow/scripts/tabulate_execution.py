@@ -7,7 +7,7 @@ import pandas as pd
 
 from command import run
 from placing.artifacts.formats import read_table, write_csv
-from placing.scenario_tables import EXECUTED_COLUMNS
+from placing.tables.scenario_tables import EXECUTED_COLUMNS
 
 log = logging.getLogger(__name__)
 

@@ -6,8 +6,8 @@ import pandas as pd
 
 from command import run
 from placing.artifacts.formats import read_table, write_csv
-from placing.metrics import DIAGNOSTICS_COLUMNS, SCORE_COLUMNS, summarise
-from placing.report import figure6_markdown, write_text
+from placing.tables.metrics import DIAGNOSTICS_COLUMNS, SCORE_COLUMNS, summarise
+from placing.tables.report import figure6_markdown, write_text
 
 
 def main(

@@ -12,12 +12,12 @@ from placing.artifacts.formats import write_csv
 from placing.artifacts.scenes import read_scene
 from placing.artifacts.semantics import read_semantics
 from placing.artifacts.theta import read_histograms
-from placing.baselines import BaselinesConfig
 from placing.clouds.ply import read_ply
-from placing.labelled_areas import label_scene
-from placing.object_clouds import LookingConfig
-from placing.semantics import log_odds
-from placing.semantics_table import height_shares, hit_rows, tabulate_semantics
+from placing.methods.baselines import BaselinesConfig
+from placing.psi.labelled_areas import label_scene
+from placing.psi.object_clouds import LookingConfig
+from placing.psi.semantics import log_odds
+from placing.tables.semantics_table import height_shares, hit_rows, tabulate_semantics
 
 log = logging.getLogger(__name__)
 

@@ -6,11 +6,11 @@ import pandas as pd
 
 from command import run
 from placing.artifacts.formats import read_table, write_csv
-from placing.metrics import SCORE_COLUMNS
-from placing.report import write_text
 from placing.seeds import generator
-from placing.sensitivity import compare_variations
-from placing.sensitivity_table import sensitivity_markdown
+from placing.tables.metrics import SCORE_COLUMNS
+from placing.tables.report import write_text
+from placing.tables.sensitivity import compare_variations
+from placing.tables.sensitivity_table import sensitivity_markdown
 
 
 def main(scores: tuple[Path, ...], seed: int, table: Path, markdown: Path) -> None:

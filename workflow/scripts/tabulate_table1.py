@@ -9,18 +9,18 @@ from command import run
 from placing.artifacts.formats import read_table, write_csv
 from placing.artifacts.plans import read_plans
 from placing.artifacts.scenes import read_scene
-from placing.offering import OFFERED
-from placing.report import write_text
-from placing.scoring import ANSWER_COLUMNS
+from placing.plans.offering import OFFERED
 from placing.seeds import generator
-from placing.table1 import (
+from placing.tables.report import write_text
+from placing.tables.scoring import ANSWER_COLUMNS
+from placing.tables.table1 import (
     long_table,
     paired_table,
     reasons_table,
     score_constraints,
     wide_table,
 )
-from placing.table1_page import table1_markdown
+from placing.tables.table1_page import table1_markdown
 
 log = logging.getLogger(__name__)
 

@@ -11,20 +11,20 @@ from command import run
 from placing.artifacts.features import read_features
 from placing.artifacts.formats import read_table, write_csv
 from placing.artifacts.scenes import read_scene
-from placing.correct_places import CorrectPlaces, read_correct_places
 from placing.rating.agreement import agreement
 from placing.rating.answers import rated_cells, read_ratings
 from placing.rating.blinding import blinded
-from placing.report import write_text
 from placing.rooms.catalogue import read_catalogue
 from placing.rooms.file import read_yaml
 from placing.rooms.reader import layout_reader
 from placing.scene import Layout, Scene
 from placing.seeds import generator
-from placing.table2 import cells, table2
-from placing.table2_answers import ANSWER_COLUMNS
-from placing.table2_page import table2_markdown
-from placing.table2_scores import score_scene, verdicts_of
+from placing.tables.correct_places import CorrectPlaces, read_correct_places
+from placing.tables.report import write_text
+from placing.tables.table2 import cells, table2
+from placing.tables.table2_answers import ANSWER_COLUMNS
+from placing.tables.table2_page import table2_markdown
+from placing.tables.table2_scores import score_scene, verdicts_of
 
 log = logging.getLogger(__name__)
 

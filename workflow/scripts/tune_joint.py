@@ -11,8 +11,8 @@ from placing.artifacts.features import read_features
 from placing.artifacts.formats import write_json
 from placing.artifacts.proposals import read_proposals
 from placing.artifacts.scenes import read_scene
-from placing.joint_tuning import stack_shares, weight_nll
-from placing.likelihoods import ScoringConfig
+from placing.joint.joint_tuning import stack_shares, weight_nll
+from placing.learning.likelihoods import ScoringConfig
 
 log = logging.getLogger(__name__)
 

@@ -14,11 +14,17 @@ from placing.artifacts.features import read_features
 from placing.artifacts.formats import write_json
 from placing.artifacts.scenes import read_scene
 from placing.artifacts.theta import read_learned
-from placing.likelihoods import ScoringConfig
-from placing.scene_model import SceneModel, Settings
+from placing.learning.likelihoods import ScoringConfig
+from placing.learning.tuning import (
+    COLUMNS,
+    TuningConfig,
+    asked_of,
+    choose,
+    try_variants,
+)
+from placing.methods.scene_model import SceneModel, Settings
 from placing.seeds import generator
 from placing.tasks import TASKS
-from placing.tuning import COLUMNS, TuningConfig, asked_of, choose, try_variants
 
 log = logging.getLogger(__name__)
 

@@ -8,30 +8,30 @@ import pandas as pd
 from tqdm import tqdm
 
 from command import run
-from placing.answer_tables import PLACEMENT_COLUMNS, placement_rows
-from placing.answering import Asked
 from placing.artifacts.features import read_features
 from placing.artifacts.formats import write_table
 from placing.artifacts.scenes import read_scene
 from placing.artifacts.theta import read_learned
-from placing.learned import Choices
-from placing.likelihoods import (
+from placing.learning.learned import Choices
+from placing.learning.likelihoods import (
     LIKELIHOOD_COLUMNS,
     ScoringConfig,
     likelihood_rows,
     with_uniform,
 )
-from placing.scene_model import SceneModel, Settings
-from placing.scoring import score_scene
-from placing.seeds import generator
-from placing.tasks import TASKS
-from placing.tuning import asked_of
-from placing.variations import (
+from placing.learning.tuning import asked_of
+from placing.learning.variations import (
     SensitivityConfig,
     coarser_places,
     coarser_poses,
     variations,
 )
+from placing.methods.answer_tables import PLACEMENT_COLUMNS, placement_rows
+from placing.methods.answering import Asked
+from placing.methods.scene_model import SceneModel, Settings
+from placing.seeds import generator
+from placing.tables.scoring import score_scene
+from placing.tasks import TASKS
 
 log = logging.getLogger(__name__)
 

@@ -6,12 +6,12 @@ from pathlib import Path
 import pandas as pd
 
 from command import run
-from placing.readme_tables import (
+from placing.tables.readme_tables import (
     execution_summary,
     table1_averages,
     table2_averages,
 )
-from placing.report import averages_by_task, write_text
+from placing.tables.report import averages_by_task, write_text
 
 
 def main(

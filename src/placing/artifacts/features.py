@@ -4,7 +4,7 @@ from pathlib import Path
 
 from placing.artifacts.formats import read_arrays, write_arrays
 from placing.candidates import Candidates
-from placing.human import HumanPoses
+from placing.people.human import HumanPoses
 
 
 def read_features(path: Path) -> tuple[Candidates, HumanPoses]:

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from placing.artifacts.features import read_features
 from placing.artifacts.scenes import read_scene
-from placing.learned import Learned
-from placing.scene_model import SceneModel, Settings
+from placing.learning.learned import Learned
+from placing.methods.scene_model import SceneModel, Settings
 
 
 def read_model(

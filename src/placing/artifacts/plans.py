@@ -5,16 +5,16 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from placing.answer_tables import LOCATION, ORIENTATION, PLACED
 from placing.artifacts.formats import read_table, write_table
 from placing.errors import BadArtifact
-from placing.robot_plans import INSIDE, PLAN_COLUMNS, REFUSED, WITH
+from placing.methods.answer_tables import LOCATION, ORIENTATION, PLACED
+from placing.plans.robot_plans import INSIDE, PLAN_COLUMNS, REFUSED, WITH
 
 ALLOWED = {"constraints": (WITH, INSIDE), "status": (PLACED, REFUSED)}
 
 
 def write_plans(path: Path, plans: pd.DataFrame) -> None:
-    """Write the plans of a fold, rows with the columns of `placing.robot_plans`."""
+    """Write the plans of a fold, rows with the columns of `robot_plans`."""
     write_table(path, plans)
 
 

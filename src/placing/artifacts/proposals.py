@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from placing.artifacts.formats import read_arrays, write_arrays
 from placing.errors import BadArtifact
-from placing.joint_options import DENSITIES, Proposals
+from placing.joint.joint_options import DENSITIES, Proposals
 
 Array = NDArray[np.float64]
 

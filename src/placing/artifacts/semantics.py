@@ -1,4 +1,4 @@
-"""What was learned of object and placing area (`placing.semantics`) as JSON.
+"""What was learned of object and placing area (`placing.psi.semantics`) as JSON.
 
 Numbers only, and the names of the descriptors they belong to, so that a file of other
 descriptors is told apart. What is read is checked: anything out of place is a
@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from placing.area_descriptors import AREA_DESCRIPTORS
 from placing.artifacts.formats import read_json, write_json
 from placing.errors import BadArtifact
-from placing.object_descriptors import OBJECT_DESCRIPTORS
-from placing.semantics import SemanticsModel
+from placing.psi.area_descriptors import AREA_DESCRIPTORS
+from placing.psi.object_descriptors import OBJECT_DESCRIPTORS
+from placing.psi.semantics import SemanticsModel
 
 NAMES = {"objects": list(OBJECT_DESCRIPTORS), "areas": list(AREA_DESCRIPTORS)}
 LARGEST = 1e9

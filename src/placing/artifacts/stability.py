@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from placing.artifacts.formats import read_json, write_json
 from placing.errors import BadInput
-from placing.stability import LEAF, StabilityModel
+from placing.psi.stability import LEAF, StabilityModel
 
 NUMBERS = ("start", "slope", "intercept")
 WHOLE = ("cut", "left", "right")

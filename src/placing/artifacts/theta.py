@@ -17,11 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from placing.artifacts.formats import read_json, write_json
-from placing.baselines import FEATURES_OF
 from placing.errors import BadArtifact
-from placing.learned import Learned
-from placing.object_context import Relations
-from placing.potential import Theta
+from placing.learning.learned import Learned
+from placing.methods.baselines import FEATURES_OF
+from placing.methods.object_context import Relations
+from placing.people.potential import Theta
 
 Array = NDArray[np.float64]
 

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from placing.artifacts.formats import read_json
-from placing.coverage import Ranks, read_calibration
 from placing.errors import BadArtifact
-from placing.learned import Choices
+from placing.learning.learned import Choices
+from placing.tables.coverage import Ranks, read_calibration
 
 
 def read_tuning(path: Path, task: str) -> tuple[Choices, Ranks]:

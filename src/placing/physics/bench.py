@@ -4,14 +4,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from placing.clouds.cloud import CloudConfig
-from placing.object_clouds import LookingConfig
-from placing.orientations import OrientationsConfig
 from placing.physics.arrangements import bodies_of
 from placing.physics.bodies import Body, Piece
 from placing.physics.grounds import Ground, Key, grounds_of, pieces_of_fixtures
 from placing.physics.settling import SettleConfig
 from placing.physics.things import Thing, things_of
 from placing.physics.trials import TrialsConfig
+from placing.psi.object_clouds import LookingConfig
+from placing.psi.orientations import OrientationsConfig
 from placing.scene import SceneObject
 
 

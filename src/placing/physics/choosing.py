@@ -10,7 +10,6 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from placing.contacts import stability_features
 from placing.physics.arrangements import unrest
 from placing.physics.bodies import Body, Piece
 from placing.physics.grounds import Ground, Key
@@ -24,9 +23,10 @@ from placing.physics.trials import (
     groups_of,
     lowered,
 )
+from placing.psi.contacts import stability_features
+from placing.psi.stability import Models, log_psi_stability
 from placing.rigid import Array
 from placing.seeds import generator
-from placing.stability import Models, log_psi_stability
 
 
 def features_of(

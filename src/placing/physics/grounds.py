@@ -8,9 +8,9 @@ from numpy.random import Generator
 
 from placing.clouds.cloud import CloudConfig, preprocess, sample_cloud
 from placing.clouds.ply import Cloud
-from placing.contacts import PlacingField
 from placing.physics.bodies import Piece, fixed_pieces
 from placing.physics.fixtures import INSTANCES, KINDS, Fixture, fixture_of
+from placing.psi.contacts import PlacingField
 from placing.scene import PlacingArea
 from placing.seeds import generator
 

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from placing.object_clouds import ObjectCloud, object_cloud
-from placing.orientations import (
+from placing.psi.object_clouds import ObjectCloud, object_cloud
+from placing.psi.orientations import (
     Orientation,
     OrientationsConfig,
     drop_of,

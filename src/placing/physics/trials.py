@@ -13,9 +13,9 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from placing import rigid
-from placing.contacts import rest_heights
 from placing.physics.grounds import Ground, Key
 from placing.physics.things import Thing
+from placing.psi.contacts import rest_heights
 from placing.rigid import Array
 from placing.scene import PlacingArea
 from placing.seeds import generator

@@ -22,10 +22,10 @@ from numpy.typing import NDArray
 from placing.areas.outlines import heal
 from placing.areas.scans import ScanAreas
 from placing.clouds.ply import Cloud
-from placing.figures import STYLE
 from placing.pictures.cameras import Camera, framing
 from placing.pictures.rooms import CORNERS_DEG
 from placing.scene import PlacingArea
+from placing.tables.figures import STYLE
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]

@@ -10,13 +10,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from placing import skeleton
-from placing.answer_tables import LOCATION, ORIENTATION, PLACED
 from placing.candidates import Candidates
 from placing.dressing import Meshes, object_meshes
 from placing.errors import BadInput, unknown
-from placing.human import HumanPoses
-from placing.likelihoods import density_key
+from placing.learning.likelihoods import density_key
+from placing.methods.answer_tables import LOCATION, ORIENTATION, PLACED
+from placing.people import skeleton
+from placing.people.human import HumanPoses
 from placing.pictures.people import Person
 from placing.scene import Arrangement, Layout, Placement, Scene
 from placing.seeds import generator
@@ -67,11 +67,11 @@ class Tables:
     """The tables about one scene and method."""
 
     poses_filled: pd.DataFrame
-    """`POSE_COLUMNS` of `placing.answer_tables`, of the task `filled`."""
+    """`POSE_COLUMNS` of `placing.methods.answer_tables`, of the task `filled`."""
     poses_empty: pd.DataFrame
     """The same of the task `empty`."""
     answers: pd.DataFrame
-    """`PLACEMENT_COLUMNS` of `placing.answer_tables`, of the task `empty`."""
+    """`PLACEMENT_COLUMNS` of `placing.methods.answer_tables`, of the task `empty`."""
 
 
 def office_of(

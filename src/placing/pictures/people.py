@@ -12,7 +12,7 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from placing import skeleton
+from placing.people import skeleton
 from placing.pictures.shading import joined
 
 Array = NDArray[np.float64]

@@ -12,7 +12,7 @@ import pandas as pd
 
 from placing.scene import Placement, SceneObject
 from placing.seeds import generator
-from placing.table2_answers import answers_of, placements_of
+from placing.tables.table2_answers import answers_of, placements_of
 
 
 @dataclass(frozen=True)

@@ -7,16 +7,16 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from placing import skeleton
-from placing.answer_tables import LOCATION, ORIENTATION, PLACED
 from placing.candidates import Candidates
 from placing.clouds.ply import Cloud
-from placing.human import HumanPoses
-from placing.likelihoods import density_key
-from placing.metrics import errors
+from placing.learning.likelihoods import density_key
+from placing.methods.answer_tables import LOCATION, ORIENTATION, PLACED
+from placing.people import skeleton
+from placing.people.human import HumanPoses
 from placing.recordings.content import Boxes, SceneRecording, Term, Use
 from placing.recordings.tables import Tables
 from placing.scene import Placement, Scene, SceneObject
+from placing.tables.metrics import errors
 
 Array = NDArray[np.float64]
 

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from trimesh import Trimesh
 
 from placing import rigid
-from placing.answer_tables import LOCATION, ORIENTATION
 from placing.candidates import Candidates
 from placing.clouds.ply import Cloud
 from placing.errors import BadArtifact
+from placing.methods.answer_tables import LOCATION, ORIENTATION
 from placing.scene import PlacingArea, Scene, SceneObject
 from placing.shapes.objects import object_shape
-from placing.table2_answers import check_objects
+from placing.tables.table2_answers import check_objects
 
 Array = NDArray[np.float64]
 

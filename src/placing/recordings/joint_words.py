@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from placing.methods import JOINT_NAMES
+from placing.methods.names import JOINT_NAMES
 from placing.recordings.joint import COLDEST, Chosen, JointRecording
 from placing.scene import PlacingArea
 

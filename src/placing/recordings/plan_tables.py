@@ -3,9 +3,9 @@
 import numpy as np
 import pandas as pd
 
-from placing.answer_tables import LOCATION, ORIENTATION, PLACED
 from placing.errors import BadArtifact
-from placing.planning_result import PlanningResult
+from placing.logs.planning_result import PlanningResult
+from placing.methods.answer_tables import LOCATION, ORIENTATION, PLACED
 from placing.recordings.plan import Search, Tried
 from placing.robot.certificates import Certificate
 
@@ -13,7 +13,7 @@ from placing.robot.certificates import Certificate
 def search_of(plans: pd.DataFrame, tried: pd.DataFrame) -> Search:
     """Return the search behind the rows of one question under one constraint.
 
-    `plans` has the columns of `placing.robot_plans`, `tried` its `TRIED_COLUMNS`.
+    `plans` has the columns of `placing.plans.robot_plans`, `tried` its `TRIED_COLUMNS`.
     """
     is_placed = (plans["status"] == PLACED).to_numpy()
     placed = plans[is_placed].sort_values("order", kind="stable")

@@ -10,7 +10,8 @@ import pyarrow as pa
 import rerun as rr
 from numpy.typing import NDArray
 
-from placing import rigid, skeleton
+from placing import rigid
+from placing.people import skeleton
 from placing.recordings.strips import packed
 from placing.recordings.thinning import evenly, thin
 

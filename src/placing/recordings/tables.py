@@ -17,14 +17,14 @@ class Tables:
     """The tables about one scene, task and method."""
 
     answers: pd.DataFrame
-    """`PLACEMENT_COLUMNS` of `placing.answer_tables`."""
+    """`PLACEMENT_COLUMNS` of `placing.methods.answer_tables`."""
     poses: pd.DataFrame
-    """`POSE_COLUMNS` of `placing.answer_tables`."""
+    """`POSE_COLUMNS` of `placing.methods.answer_tables`."""
     scores: pd.DataFrame
-    """`SCORE_COLUMNS` of `placing.metrics`."""
+    """`SCORE_COLUMNS` of `placing.tables.metrics`."""
     traces: pd.DataFrame
-    """`TRACE_COLUMNS` of `placing.answer_tables`."""
+    """`TRACE_COLUMNS` of `placing.methods.answer_tables`."""
     diagnoses: pd.DataFrame
-    """`DIAGNOSTIC_COLUMNS` of `placing.diagnostics`."""
+    """`DIAGNOSTIC_COLUMNS` of `placing.people.diagnostics`."""
     explanations: pd.DataFrame
-    """`EXPLANATION_COLUMNS` of `placing.explanation`."""
+    """`EXPLANATION_COLUMNS` of `placing.methods.explanation`."""

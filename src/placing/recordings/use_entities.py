@@ -7,7 +7,7 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from placing import skeleton
+from placing.people import skeleton
 from placing.recordings.content import SceneRecording, Use
 from placing.recordings.pose_entities import FIGURE, KIND_COLORS
 from placing.recordings.strips import strips

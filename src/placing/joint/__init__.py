@@ -1,0 +1,1 @@
+"""The joint placement of many objects: an integer program with stacks."""

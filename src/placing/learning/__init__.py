@@ -1,0 +1,1 @@
+"""What is learned from labelled scenes: Theta, likelihoods and chosen numbers."""

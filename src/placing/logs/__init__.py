@@ -1,0 +1,1 @@
+"""Plans as MCAP in ROS 2 encoding."""

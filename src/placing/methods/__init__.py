@@ -1,0 +1,1 @@
+"""The methods that arrange: where each puts the objects, and how sure it is."""

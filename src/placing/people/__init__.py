@@ -1,0 +1,1 @@
+"""Poses of people, hallucinated by a Dirichlet process mixture."""

@@ -1,0 +1,73 @@
+"""A robot in a scene: what it plans with, from a scan, and what checks its plans."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from placing.physics.arrangements import bodies_of, fixed_of
+from placing.physics.settling import SettleConfig
+from placing.plans.robot_arranging import Robot
+from placing.rigid import Array
+from placing.robot.checker import CheckerConfig, SceneChecker
+from placing.robot.distance_field import distance_field
+from placing.robot.driving import Floor
+from placing.robot.errands import Boxes, Errand
+from placing.robot.exact import Exact
+from placing.robot.grasps import GraspSheet
+from placing.robot.model import RobotModel
+from placing.robot.planning import PlanningConfig
+from placing.robot.putting import Placer
+from placing.robot.seeking import Seeker
+from placing.robot.truth import Truth
+from placing.scene import Layout, Scene, SceneObject
+
+
+@dataclass(frozen=True)
+class RobotConfig:
+    """The sections of the configuration that a robot in a scene looks at."""
+
+    checking: CheckerConfig
+    planning: PlanningConfig
+    settling: SettleConfig
+
+
+def robot_of(placer: Placer) -> Robot:
+    """Return what the search for an order asks, answered by a planner."""
+
+    def errand(item: SceneObject, T_world_object: Array, boxes: Boxes) -> Errand:
+        return Errand(True, item, T_world_object, boxes)
+
+    return Robot(
+        lambda *asked: placer.planned(errand(*asked)),
+        lambda *asked: placer.carried_out(errand(*asked)),
+    )
+
+
+@contextmanager
+def placer_in(
+    scene: Scene,
+    points: NDArray[np.floating],
+    layout: Layout,
+    model: RobotModel,
+    sheet: GraspSheet,
+    config: RobotConfig,
+    seed: int,
+) -> Iterator[Placer]:
+    """Give a planner that sees the points (p, 3) of a scene.
+
+    What it plans is checked among the furniture of the layout.
+    """
+    checking, planning, settling = config.checking, config.planning, config.settling
+    checker = SceneChecker(model, distance_field(points, checking), checking)
+    floor = Floor(checker, planning, scene.scene)
+    movable = [item for item in scene.objects if item.is_movable]
+    margin_m = settling.margin_m
+    bodies = bodies_of(movable, margin_m)
+    fixed = fixed_of(layout, margin_m)
+    with Truth(model, fixed, checking, settling) as truth:
+        exact = Exact(truth, bodies, margin_m, planning.contact_m)
+        seeker = Seeker(checker, floor, exact, sheet, planning, seed)
+        yield Placer(seeker, exact)

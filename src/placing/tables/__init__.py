@@ -1,0 +1,1 @@
+"""Scores, and the tables and figures made of them."""
