@@ -128,7 +128,7 @@ def test_a_touched_module_is_not_a_changed_one(finished):
 
 
 def test_an_edited_module_runs_the_stages_that_import_it(finished):
-    module = finished / "src" / "placing" / "scoring.py"
+    module = finished / "src" / "placing" / "tables" / "scoring.py"
     text = module.read_text()
     module.write_text(f"{text}\nEDITED = True\n")
     try:
