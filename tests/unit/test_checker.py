@@ -21,7 +21,7 @@ from scipy.ndimage import map_coordinates
 from placing import rigid
 from placing.robot.checker import SceneChecker, held, levers
 from placing.robot.distance_field import distance_field
-from placing.robot.kernels import sphere_centres
+from placing.robot.kernels import forward, n_steps
 from placing.robot.model import tool_pose
 from placing.robot.truth import Truth, steps
 
@@ -30,10 +30,16 @@ BESIDE = rigid.from_yaw(0.3, (0.06, 0.0, 0.02))
 
 def centres_of(q):
     """Return the centres of all spheres of the robot, (s, 3)."""
-    model = pr2()
-    out = np.empty_like(model.spheres.at_m)
-    sphere_centres(model.tree, model.spheres, np.asarray(q, float), out)
-    return out
+    return placed_at(pr2().spheres, q)
+
+
+def placed_at(spheres, q):
+    """Return centres of spheres in the world, (s, 3)."""
+    tree = pr2().tree
+    frames = np.empty((len(tree.axis), 3, 4))
+    forward(tree, np.asarray(q, float), frames)
+    T = frames[spheres.frame]
+    return np.einsum("sij,sj->si", T[:, :, :3], spheres.at_m) + T[:, :, 3]
 
 
 def slow_scene(q):
@@ -251,3 +257,21 @@ def test_an_edge_is_free_where_all_its_steps_are():
         assert checker().is_edge_free(q0, q1) == expected
         n_free += expected
     assert n_free > 5
+
+
+def test_steps_of_an_edge_are_as_short_as_they_say_also_for_what_is_held():
+    model = pr2()
+    broom = np.array([[0.0, 0.0, 0.8], [0.05, 0.1, -0.6], [0.2, 0.0, 0.0]])
+    T, last = model.tree.T_frame_tool, len(model.tree.axis) - 1
+    at = np.vstack([model.spheres.at_m, broom @ T[:, :3].T + T[:, 3]])
+    frame = np.append(model.spheres.frame, np.full(3, last))
+    lever_m, longest = levers(model, broom), 0.0
+    spheres = model.spheres._replace(frame=frame, at_m=at)
+    for q0, q1 in pairwise(anywhere(8, 60)):
+        q1[10:] += 1.5  # the wrist rolls
+        n = n_steps(model.tree, frame, at, lever_m, q0, q1, CONFIG.step_m)
+        rows = q0 + np.arange(n + 1)[:, None] / n * (q1 - q0)
+        centres = np.array([placed_at(spheres, q) for q in rows])
+        away = np.linalg.norm(np.diff(centres, axis=0), axis=2).max()
+        longest = max(longest, away / CONFIG.step_m)
+    assert 0.7 < longest <= 1.02

@@ -43,16 +43,18 @@ def motion(item, T):
 class Arm:
     """A robot that reaches over nothing: what stands at smaller x hides the rest.
 
-    Beyond `true_m` it only believes that it reaches.
+    Beyond `true_m` it only believes that it reaches, and so beside `most` objects.
     """
 
-    def __init__(self, reach_m=np.inf, true_m=np.inf):
+    def __init__(self, reach_m=np.inf, true_m=np.inf, most=9):
         self.reach_m, self.true_m, self.asked = reach_m, true_m, []
+        self.most = most
         self.robot = Robot(self.put, self.carry_out)
 
     def carry_out(self, item, T, boxes):
         found = self.put(item, T, boxes)
-        return Refusal(REJECTED, ()) if T[4] > self.true_m else found
+        is_rejected = T[4] > self.true_m or len(boxes) >= self.most
+        return Refusal(REJECTED, ()) if is_rejected else found
 
     def put(self, item, T, boxes):
         self.asked.append((item.object_id, T[4], tuple(boxes)))
@@ -124,6 +126,18 @@ def test_what_cannot_be_carried_out_is_ruled_out_and_an_order_is_sought_again():
     assert rejected == 0
 
 
+@pytest.mark.parametrize("most", [1, 2])
+def test_what_is_rejected_beside_others_is_left_out_in_the_end(most):
+    names = ("mouse1", "mouse2", "shoes")
+    possible = {
+        name: [candidate(name, n, 1.0 + 0.3 * k + 1.2 * n) for n in range(2)]
+        for k, name in enumerate(names)
+    }
+    robotic = arrange(possible, STANDING, Arm(most=most).robot, CONFIG)
+    assert len(robotic.steps) == most
+    assert len(robotic.refused) == 3 - most
+
+
 def test_of_objects_in_conflict_the_less_likely_is_left_out():
     possible = {
         "mouse1": [candidate("mouse1", 0, 1.0, score=-5)],
@@ -149,7 +163,7 @@ def test_random_plans_can_be_carried_out_again():
         arm = Arm(reach_m=2.0)
         robotic = arrange(possible, STANDING, arm.robot, CONFIG)
         assert len(robotic.steps) + len(robotic.refused) == 3
-        assert robotic.n_calls == len(arm.asked) == len(robotic.tried)
+        assert len(robotic.tried) + len(robotic.steps) == len(arm.asked)
         boxes = {}
         for step in robotic.steps:
             item = ITEMS[step.candidate.object_id]

@@ -8,7 +8,7 @@ from robot_study import Bullet, model, random_configurations, settings
 
 from placing import rigid
 from placing.errors import BadInput
-from placing.robot.inverse import arm_solutions, follow
+from placing.robot.inverse import arm_solutions, follow, solutions_at
 from placing.robot.model import load_robot, tool_pose
 
 
@@ -152,3 +152,16 @@ def test_a_line_out_of_reach_is_not_followed():
     assert len(follow(robot, q, line[: len(path)])) == len(path)
     jump = line[[0, 99]] - np.array([0, 0, 0, 0, 0.7, 0, 0]) * [[0], [1]]
     assert len(follow(robot, q, jump)) == 1
+
+
+@pytest.mark.parametrize("n", [1, 2, 40])
+def test_many_poses_together_have_the_solutions_that_each_has(n):
+    robot, some = model("pr2"), reachable(np.random.default_rng(7), "pr2", n)
+    Ts = np.array([rigid.homogeneous(T) for _, T in some])
+    which, arms = solutions_at(robot, Ts, np.array([q[3] for q, _ in some]))
+    for i, (q, T) in enumerate(some):
+        alone = arm_solutions(robot, T, q[3])
+        together = arms[which == i]
+        assert len(together) == len(alone) or len(together) == 0
+        assert np.allclose(together, alone[: len(together)], atol=1e-9)
+    assert len(np.unique(which)) >= 0.9 * n

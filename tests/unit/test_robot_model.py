@@ -9,7 +9,6 @@ from scipy.spatial.transform import Rotation
 
 from placing import rigid
 from placing.errors import BadInput
-from placing.robot.kernels import sphere_centres
 from placing.robot.meshes import hull_of
 from placing.robot.model import link_poses, load_robot, tool_pose
 from placing.robot.tree import fixed_values, gripper_values, moving_joints, tree_of
@@ -17,6 +16,12 @@ from placing.robot.urdf import read_srdf
 
 HELD_M, HELD_AT_M = (0.3, 0.086, 0.3), (0.12, 0, 0)
 """A large object, 3 cm of which are between the fingers."""
+
+
+def centres_of(robot, q):
+    """Return the centres of all spheres in the world, (s, 3)."""
+    T = link_poses(robot.tree, q)[robot.spheres.link]
+    return np.einsum("sij,sj->si", T[:, :3, :3], robot.spheres.centre_m) + T[:, :3, 3]
 
 
 def heights(robot, n):
@@ -101,8 +106,7 @@ def test_fingers_at_any_opening_are_inside_the_spheres(share):
     chain = moving_joints(robot.settings, robot.description)
     _, opened = tree_of(robot.settings, robot.description, chain, values)
     q = standing(robot, 0.1, robot.settings.stow)
-    centres = np.empty((len(robot.spheres.radius_m), 3))
-    sphere_centres(robot.tree, robot.spheres, q, centres)
+    centres = centres_of(robot, q)
     poses, rng = link_poses(opened, q), np.random.default_rng(3)
     for shape in robot.description.shapes:
         if shape.link in robot.settings.gripper_links:
@@ -136,10 +140,10 @@ def test_fixed_poses_of_the_arm_touch_nothing_at_any_height(name, pose):
 @pytest.mark.parametrize("pose", ["stow", "carry"])
 def test_fixed_poses_are_free_by_the_spheres_too(name, pose):
     robot = model(name)
-    centres, spheres = np.empty_like(robot.spheres.at_m), robot.spheres
+    spheres = robot.spheres
     for height in heights(robot, 3):
         q = standing(robot, height, getattr(robot.settings, pose))
-        sphere_centres(robot.tree, spheres, q, centres)
+        centres = centres_of(robot, q)
         for i, j in robot.self_pairs:
             a, b = spheres.link == i, spheres.link == j
             gap = np.linalg.norm(centres[a][:, None] - centres[b], axis=2)

@@ -19,7 +19,7 @@ from placing.overlap import overlaps
 from placing.plans.placing_order import Verdict
 from placing.plans.robot_candidates import Candidate
 from placing.plans.try_place import Found, Limits, place_most
-from placing.robot.planning import NO_PLACE, Motion, Refusal
+from placing.robot.planning import NO_PLACE, REJECTED, Motion, Refusal
 from placing.scene import Placement, SceneObject, standing_at, standing_box
 
 Array = NDArray[np.float64]
@@ -102,10 +102,8 @@ class Robotic:
     """In the order in which they are carried out."""
     refused: dict[str, str]
     """The reason for each object that is not placed."""
-    n_calls: int
-    """How often the robot was asked."""
     tried: tuple[Tried, ...]
-    """In the order in which it was asked."""
+    """In the order in which it was asked; what it carried out as planned once."""
 
 
 def put_nowhere(
@@ -140,7 +138,7 @@ def arrange(
         steps = asking.carried_out(found.order)
         if steps is not None:
             refused |= _left_out(left, found, dropped)
-            return Robotic(steps, refused, asking.n_calls, tuple(asking.tried))
+            return Robotic(steps, refused, tuple(asking.tried))
 
 
 def _left_out(
@@ -157,9 +155,11 @@ def _left_out(
     }
 
 
-Placed = tuple[Candidate, frozenset[Candidate]]
+Attempt = tuple[Candidate, frozenset[Candidate]]
 """One more placement, and those before it."""
 NOTHING: frozenset[Candidate] = frozenset()
+MOST_REJECTED = 3
+"""A placement that the exact check does not accept so often is not tried again."""
 
 
 class Asking:
@@ -167,14 +167,14 @@ class Asking:
 
     def __init__(self, standing: Standing, robot: Robot) -> None:
         """Put what is given where it stands."""
-        self.n_calls = 0
         self.tried: list[Tried] = []
         self._standing, self._robot = standing, robot
         self._given = {p.object_id: self._box(p) for p in standing.given}
         self._alone: dict[Candidate, Motion | Refusal] = {}
         self._out_of_reach: dict[tuple[str, int], Refusal] = {}
-        self._planned: dict[Placed, Motion | Refusal] = {}
-        self._carried_out: dict[Placed, Motion] = {}
+        self._planned: dict[Attempt, Motion | Refusal] = {}
+        self._carried_out: dict[Attempt, Motion | Refusal] = {}
+        self._ruled_out: dict[Candidate, list[frozenset[Candidate]]] = {}
 
     def split(
         self, possible: Mapping[str, Sequence[Candidate]]
@@ -207,9 +207,8 @@ class Asking:
         if candidate not in self._alone:
             place = candidate.object_id, candidate.option
             found = self._out_of_reach.get(place)
-            found = found or self._ask(self._robot.plan, candidate, NOTHING)
-            # ASSUME: where nothing lets the robot stand to put an object, nothing lets
-            # it put the object turned otherwise; so at all of 146 places of an office.
+            found = found or self._plan(candidate, NOTHING)
+            # Where the robot can stand to put an object is the same for all headings.
             if isinstance(found, Refusal) and found.reason == NO_PLACE:
                 self._out_of_reach[place] = found
             self._alone[candidate] = found
@@ -222,10 +221,14 @@ class Asking:
         found = self.alone(candidate)
         if isinstance(found, Refusal):
             return Verdict(False)
+        # More objects never make a placement easier.
+        for others in self._ruled_out.get(candidate, ()):
+            if others <= placed:
+                return Verdict(False, others)
         if placed:
             key = candidate, placed
             if key not in self._planned:
-                self._planned[key] = self._ask(self._robot.plan, *key)
+                self._planned[key] = self._plan(*key)
             found = self._planned[key]
         if isinstance(found, Motion):
             return Verdict(True)
@@ -239,48 +242,72 @@ class Asking:
 
         Then the step that cannot is ruled out.
         """
-        steps = []
+        steps, boxes = [], dict(self._given)
         poses = {p.object_id: p.T_world_object for p in self._standing.given}
         for n, candidate in enumerate(order):
-            motion = self._motion(candidate, frozenset(order[:n]))
-            if motion is None:
+            placed, name = frozenset(order[:n]), candidate.object_id
+            motion = self._carry_out(candidate, placed, boxes)
+            if isinstance(motion, Refusal):
+                self._rule_out(candidate, placed)
                 return None
             steps.append(Step(candidate, motion, dict(poses)))
-            poses[candidate.object_id] = motion.T_world_object
+            poses[name] = motion.T_world_object
+            boxes[name] = standing_at(self._standing.items[name], poses[name])
         return tuple(steps)
 
-    def _motion(
-        self, candidate: Candidate, placed: frozenset[Candidate]
-    ) -> Motion | None:
-        """Return the motion that carries out a step, or None and rule it out."""
-        key = candidate, placed
-        if key in self._carried_out:
-            return self._carried_out[key]
-        found = self._ask(self._robot.carry_out, *key)
-        if isinstance(found, Motion):
-            self._carried_out[key] = found
-            return found
-        self._planned[key] = Refusal(found.reason, ())
-        alone = (
-            self._ask(self._robot.carry_out, candidate, NOTHING) if placed else found
-        )
+    def _rule_out(self, candidate: Candidate, placed: frozenset[Candidate]) -> None:
+        """Rule out a placement that cannot be carried out beside others, or at all."""
+        alone = self._carry_out(candidate, NOTHING, self._given)
+        known = self._ruled_out.setdefault(candidate, [])
+        known.append(placed)
         if isinstance(alone, Refusal):
-            self._alone[candidate] = found
-        return None
+            self._alone[candidate] = alone
+        elif len(known) >= MOST_REJECTED:
+            # ASSUME: the search has to end; so often none of hundreds was rejected.
+            self._alone[candidate] = Refusal(REJECTED, ())
+
+    def _carry_out(
+        self,
+        candidate: Candidate,
+        placed: frozenset[Candidate],
+        boxes: Mapping[str, Array],
+    ) -> Motion | Refusal:
+        """Return how an object is truly put where others were, asked only once."""
+        key = candidate, placed
+        if key not in self._carried_out:
+            found = self._ask(self._robot.carry_out, candidate, boxes)
+            self._carried_out[key] = found
+            if isinstance(found, Refusal):
+                self._note(candidate, placed, found)
+        return self._carried_out[key]
+
+    def _plan(
+        self, candidate: Candidate, placed: frozenset[Candidate]
+    ) -> Motion | Refusal:
+        """Return how an object would be put where others would stand."""
+        boxes = self._given | {c.object_id: self._placed_box(c) for c in placed}
+        found = self._ask(self._robot.plan, candidate, boxes)
+        self._note(candidate, placed, found)
+        return found
 
     def _ask(
-        self, put: Put, candidate: Candidate, placed: frozenset[Candidate]
+        self, put: Put, candidate: Candidate, boxes: Mapping[str, Array]
     ) -> Motion | Refusal:
-        """Return how the robot puts an object where others stand."""
-        self.n_calls += 1
-        boxes = self._given | {c.object_id: self._placed_box(c) for c in placed}
+        """Return what the robot says to a placement among boxes."""
         item = self._standing.items[candidate.object_id]
         T = candidate.placement(item).T_world_object
-        found = put(item, T, {name: boxes[name] for name in sorted(boxes)})
+        return put(item, T, {name: boxes[name] for name in sorted(boxes)})
+
+    def _note(
+        self,
+        candidate: Candidate,
+        placed: frozenset[Candidate],
+        found: Motion | Refusal,
+    ) -> None:
+        """Keep what the robot said for the record."""
         refused = found if isinstance(found, Refusal) else Refusal("", ())
         among = tuple(sorted(c.object_id for c in placed))
         self.tried.append(Tried(candidate, among, refused.reason, refused.blockers))
-        return found
 
     def _placed_box(self, candidate: Candidate) -> Array:
         """Return the box of a placed object, where the motion alone leaves it, (7,)."""

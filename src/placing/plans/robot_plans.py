@@ -92,10 +92,10 @@ def rows_of(
         row = (*named, world.constraints, item.object_id, item.category, PLACED, "")
         row += (order, candidate.option, candidate.heading, step.motion.grasp)
         pose = (*placement.location.tolist(), *placement.orientation.tolist())
-        rows.append((*row, candidate.area, *pose, robotic.n_calls))
+        rows.append((*row, candidate.area, *pose, len(robotic.tried)))
     for name, reason in sorted(robotic.refused.items()):
         row = (*named, world.constraints, name, items[name].category, REFUSED, reason)
-        rows.append((*row, -1, -1, -1, "", "", *[float("nan")] * 7, robotic.n_calls))
+        rows.append((*row, -1, -1, -1, "", "", *[float("nan")] * 7, len(robotic.tried)))
     return rows
 
 

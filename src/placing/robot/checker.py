@@ -114,7 +114,7 @@ class SceneChecker:
 
     @property
     def n_checks(self) -> int:
-        """Configurations checked so far, by this checker and those with other boxes."""
+        """Configurations checked so far, of states and of edges, whatever the boxes."""
         return int(vars(self)["_counter"][0])
 
     def with_boxes(self, boxes: Array) -> "SceneChecker":
@@ -276,7 +276,7 @@ def holding(body: Body, model: RobotModel, held: Held, config: CheckerConfig) ->
     more = _clustered([(at, held.radius_m)], config)
     pairs = [(body.n_robot, i) for i in np.flatnonzero(~body.is_gripper).tolist()]
     ends = (more[3][1:] + body.cluster[-1], more[5][1:] + body.link[-1])
-    lever_m, radius = levers(model, held), np.append(body.radius_m, more[1])
+    lever_m, radius = levers(model, held.centre_m), np.append(body.radius_m, more[1])
     last = len(model.tree.axis) - 1
     return Body(
         np.vstack([body.at_m, more[0]]),
@@ -341,13 +341,16 @@ def _ball(at: Array, radius: Array, config: CheckerConfig) -> Array:
     return np.array([*centre, (away + radius).max(), (away + reach).max()])
 
 
-def levers(model: RobotModel, held: Held | None = None) -> Array:
-    """Return how far a unit of each coordinate moves a centre at most, (4 + a,)."""
+def levers(model: RobotModel, held_m: Array | None = None) -> Array:
+    """Return how far a unit of each coordinate moves a centre at most, (4 + a,).
+
+    `held_m` (h, 3) are more points, in the frame of the tool.
+    """
     tree, spheres = model.tree, model.spheres
     length = np.zeros(len(tree.axis) + 1)  # of what hangs on each frame, stretched out
     np.maximum.at(length, spheres.frame, np.linalg.norm(spheres.at_m, axis=1))
-    if held is not None:
-        at = held.centre_m @ tree.T_frame_tool[:, :3].T + tree.T_frame_tool[:, 3]
+    if held_m is not None:
+        at = held_m @ tree.T_frame_tool[:, :3].T + tree.T_frame_tool[:, 3]
         length[-2] = max(length[-2], np.linalg.norm(at, axis=1).max())
     for k in range(len(tree.axis) - 2, -1, -1):
         # The upper limit of a joint that slides lengthens what hangs on it.

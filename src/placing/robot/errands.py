@@ -31,6 +31,11 @@ class Errand:
         return replace(self, boxes={})
 
     @property
+    def standing(self) -> tuple[tuple[str, bytes], ...]:
+        """What stands there, to be compared."""
+        return tuple((name, box.tobytes()) for name, box in sorted(self.boxes.items()))
+
+    @property
     def key(self) -> tuple[object, ...]:
         """All but what stands there."""
         start = b"" if self.start is None else self.start.tobytes()

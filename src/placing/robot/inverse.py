@@ -54,11 +54,11 @@ def solutions_at(
         found = [numerical.solutions(model, T, n) for T in Ts]
         which = np.repeat(np.arange(len(found)), [len(arms) for arms in found])
         return which, np.vstack([np.empty((0, model.n_arm)), *found])
-    out = np.empty((MOST_SOLUTIONS * len(Ts), 7))
+    pans = _pans(model.arm, n)
+    out = np.empty((MOST_SOLUTIONS * len(Ts) + pr2_arm.N_MOST * len(pans), 7))
     which = np.empty(len(out), np.int64)
-    k = pr2_arm.solve_many(
-        model.arm, np.ascontiguousarray(Ts), _pans(model.arm, n), out, which
-    )
+    args = np.ascontiguousarray(Ts), pans, out, which
+    k = pr2_arm.solve_many(model.arm, *args)
     return which[:k].copy(), out[:k].copy()
 
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+# ASSUME: what moves fastest in a third of a motion moves no more above its chords.
 CURVED = 1.2
 """Way along an arc, and its fastest part, against the chords of its thirds."""
 
@@ -67,23 +68,6 @@ def forward(tree: Tree, q: Array, out: Array) -> None:
             _turn(out[i], tree.axis[i], q[i + 2])
         else:
             _slide(out[i], tree.axis[i], q[i + 2])
-
-
-@njit(cache=True)
-def sphere_centres(tree: Tree, spheres: Spheres, q: Array, out: Array) -> None:
-    """Write the centres of all spheres in the world [m] into `out` (s, 3)."""
-    frames = np.empty((len(tree.axis), 3, 4))
-    forward(tree, q, frames)
-    place(frames, spheres.frame, spheres.at_m, out)
-
-
-@njit(cache=True)
-def place(frames: Array, frame: NDArray[np.int64], at_m: Array, out: Array) -> None:
-    """Write points (s, 3) fixed in their frames [m], in the world, into `out`."""
-    for i in range(len(at_m)):
-        T, x, y, z = frames[frame[i]], at_m[i, 0], at_m[i, 1], at_m[i, 2]
-        for r in range(3):
-            out[i, r] = T[r, 0] * x + T[r, 1] * y + T[r, 2] * z + T[r, 3]
 
 
 @njit(cache=True)

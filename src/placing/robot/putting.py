@@ -5,6 +5,8 @@ it is carried out. Motions are remembered: what is free where nothing else stand
 is where something does.
 """
 
+import numpy as np
+
 from placing.rigid import Array
 from placing.robot.checker import SceneChecker
 from placing.robot.distance_field import open_field
@@ -20,9 +22,9 @@ class Placer:
     def __init__(self, seeker: Seeker, exact: Exact) -> None:
         """Take who seeks motions; `exact` knows the true furniture."""
         self.seeker, self.exact = seeker, exact
-        self._refused: dict[tuple, Refusal] = {}
         self._motions: dict[tuple, list[Motion]] = {}
-        self._complaints: dict[tuple, tuple[Motion, str]] = {}
+        self._refused: dict[tuple, Refusal] = {}
+        self._carried_out: dict[tuple, Motion | Refusal] = {}
         self._clear: dict[tuple[int, bytes], bool] = {}
         checker = seeker.checker
         self._open = SceneChecker(checker.model, open_field(), checker.config)
@@ -35,23 +37,33 @@ class Placer:
         key = errand.key
         if key not in self._motions:
             self._motions[key] = []
-            alone = self.seeker.sought(errand.alone)
-            if isinstance(alone, Refusal):
-                self._refused[key] = alone
-            else:
-                self._motions[key].append(alone)
-        if key in self._refused:
-            return self._refused[key]
-        for motion in self._motions[key]:
-            if self._holds(motion, errand):
-                return motion
-        found = self.seeker.sought(errand)
-        if isinstance(found, Motion):
-            self._motions[key].append(found)
-        return found
+            self._sought(errand.alone)
+        if (key, ()) in self._refused:
+            return self._refused[key, ()]
+        known = (m for m in self._motions[key] if self._holds(m, errand))
+        return next(known, None) or self._sought(errand)
 
     def carried_out(self, errand: Errand) -> Motion | Refusal:
         """Return a motion that the exact check accepts, or why there is none."""
+        asked = errand.key, errand.standing
+        if asked not in self._carried_out:
+            self._carried_out[asked] = self._accepted(errand)
+        return self._carried_out[asked]
+
+    def _sought(self, errand: Errand) -> Motion | Refusal:
+        """Return a new motion among the points of the scan, or why there is none."""
+        asked = errand.key, errand.standing
+        if asked in self._refused:
+            return self._refused[asked]
+        found = self.seeker.sought(errand)
+        if isinstance(found, Motion):
+            self._motions[errand.key].append(found)
+        else:
+            self._refused[asked] = found
+        return found
+
+    def _accepted(self, errand: Errand) -> Motion | Refusal:
+        """Return the first known motion that is accepted, else a new one, else why."""
         planned = self.planned(errand)
         if isinstance(planned, Refusal):
             return planned
@@ -65,7 +77,14 @@ class Placer:
         return found
 
     def _holds(self, motion: Motion, errand: Errand) -> bool:
-        """Return whether a motion of the same errand is free of all that stands now."""
+        """Return whether a motion of the same errand is free of all that stands now.
+
+        What is put down has to touch where it did.
+        """
+        if errand.is_putting:
+            args = errand.item, errand.T_world_object, errand.boxes
+            if not np.array_equal(self.exact.contact(*args), motion.T_world_object):
+                return False
         return all(self._is_clear(motion, errand, box) for box in errand.boxes.values())
 
     def _is_clear(self, motion: Motion, errand: Errand, box: Array) -> bool:
@@ -86,15 +105,6 @@ class Placer:
 
     def _complaint(self, errand: Errand, motion: Motion) -> str:
         """Return why the exact check does not accept a motion; empty if it does."""
-        boxes = sorted(errand.boxes.items())
-        key = id(motion), *((name, box.tobytes()) for name, box in boxes)
-        if key not in self._complaints:
-            # The motion is kept so that no other one gets its number.
-            self._complaints[key] = motion, self._looked_at(errand, motion)
-        return self._complaints[key][1]
-
-    def _looked_at(self, errand: Errand, motion: Motion) -> str:
-        """Return what `_complaint` does, of a motion that was not looked at before."""
         self.exact.stand(errand.boxes)
         if self.exact.complaint(motion, errand.item):
             return REJECTED

@@ -173,8 +173,8 @@ class Truth:
         touching: bool = False,
     ) -> str:
         """Return the first hit on the way along a path (t, 4 + a); empty if none."""
-        spheres = self._moving_points(held_id, T_tool_object)
-        args = self._model.tree, spheres, self._lever_m, self._config.exact_step_m
+        spheres, lever_m = self._moving_points(held_id, T_tool_object)
+        args = self._model.tree, spheres, lever_m, self._config.exact_step_m
         for n, q in steps(path, *args):
             if hit := self.hits(q, held_id, T_tool_object, touching):
                 return f"{hit[0]} after row {n}"
@@ -182,18 +182,22 @@ class Truth:
 
     def _moving_points(
         self, held_id: str | None, T_tool_object: Array | None
-    ) -> Spheres:
-        """Return the spheres of the robot, and the corners of what it holds as more."""
+    ) -> tuple[Spheres, Array]:
+        """Return the spheres of the robot with the corners of what it holds as more.
+
+        And how far a unit of each coordinate moves one of them at most, (4 + a,).
+        """
         spheres, tree = self._model.spheres, self._model.tree
         if held_id is None or T_tool_object is None:
-            return spheres
+            return spheres, self._lever_m
         corners = rigid.apply(T_tool_object, self._standing[held_id][1].corners_m)
         at = corners @ tree.T_frame_tool[:, :3].T + tree.T_frame_tool[:, 3]
         frame = np.full(len(at), len(tree.axis) - 1)
-        return spheres._replace(
+        more = spheres._replace(
             frame=np.concatenate([spheres.frame, frame]),
             at_m=np.vstack([spheres.at_m, at]),
         )
+        return more, levers(self._model, corners)
 
     def touching_pose(self, object_id: str, reach_m: float) -> Array:
         """Move an object up or down until it touches; return where it is, (7,)."""
