@@ -5,7 +5,6 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 from tqdm import tqdm
 
 from command import run
@@ -15,18 +14,15 @@ from placing.artifacts.formats import write_table
 from placing.artifacts.scenes import read_scene
 from placing.artifacts.theta import read_learned
 from placing.clouds.ply import read_ply
-from placing.learning.learned import Choices
-from placing.methods.answering import Asked
 from placing.methods.scene_model import SceneModel, Settings
-from placing.plans.robot_plans import TRIED_COLUMNS, plan_table, rows_of, tried_rows
-from placing.plans.scenarios import ScenarioConfig, plan_scenario, world_of
+from placing.plans.robot_plans import plan_table, rows_of, tried_rows, tried_table
+from placing.plans.scenarios import ScenarioConfig, asked_about, plan_scenario, world_of
 from placing.robot.grasps import read_grasps
 from placing.robot.model import load_robot
 from placing.robot.settings import read_robot
 from placing.rooms.file import read_yaml
 from placing.rooms.reader import layout_reader
 from placing.seeds import generator
-from placing.tasks import questions
 
 log = logging.getLogger(__name__)
 
@@ -73,26 +69,22 @@ def main(
     read = layout_reader(rooms, schemas / "room.schema.yaml", catalogue)
     rows, asked_for, found = [], [], []
     for path in tqdm(sorted(scenes.glob("*.json")), unit="scene", disable=None):
-        scene = read_scene(path)
-        seen = read_features(features / f"{scene.scene}.npz")
-        (question,) = questions(scene, "empty")
-        # `dp` asks for no K and no omega.
-        stream = partial(generator, seed, "plan_scenarios", scene.scene)
-        args = SceneModel(scene, *seen, learned, settings), question, Choices(1, 1.0)
-        points = np.asarray(read_ply(clouds / f"{scene.scene}.ply").points, float)
-        robotic, some, failed = plan_scenario(
-            *(Asked(stream, *args), read(scene.scene), points),
-            *((model, sheet), planning, seed),
-        )
+        name = path.stem
+        seen = read_features(features / f"{name}.npz")
+        scene_model = SceneModel(read_scene(path), *seen, learned, settings)
+        asked = asked_about(scene_model, partial(generator, seed, "plan_scenarios"))
+        points = np.asarray(read_ply(clouds / f"{name}.ply").points, float)
+        args = asked, read(name), points, (model, sheet), planning, seed
+        robotic, some, failed = plan_scenario(*args)
         found += some
-        rows += rows_of(world_of(scene.scene), question, robotic)
-        asked_for += tried_rows(world_of(scene.scene), question, robotic)
-        for name, reason in sorted({**robotic.refused, **failed}.items()):
-            log.warning("%s: %s is not placed: %s", scene.scene, name, reason)
+        rows += rows_of(world_of(name), asked.question, robotic)
+        asked_for += tried_rows(world_of(name), asked.question, robotic)
+        for item, reason in sorted({**robotic.refused, **failed}.items()):
+            log.warning("%s: %s is not placed: %s", name, item, reason)
     write_table(plans, plan_table(rows))
-    write_table(tried, pd.DataFrame(asked_for, columns=list(TRIED_COLUMNS)))
-    urdf, arm = model.settings.urdf, model.settings.chain
-    write_certificates(certificates, robot, urdf, arm, found)
+    write_table(tried, tried_table(asked_for))
+    arm = model.settings.urdf, model.settings.chain
+    write_certificates(certificates, robot, *arm, found)
     log.info("%d objects are placed", len(found))
 
 

@@ -58,7 +58,7 @@ def placer_in(
 ) -> Iterator[Placer]:
     """Give a planner that sees the points (p, 3) of a scene.
 
-    What it plans is checked among the furniture of the layout.
+    What it carries out is checked among the furniture of the layout.
     """
     checking, planning, settling = config.checking, config.planning, config.settling
     checker = SceneChecker(model, distance_field(points, checking), checking)

@@ -7,15 +7,18 @@ the pick-up table is in the way like everything else.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 import pandas as pd
+from numpy.random import Generator
 from numpy.typing import NDArray
 from shapely import Point
 from shapely.geometry.base import BaseGeometry
 
+from placing.learning.learned import Choices
 from placing.methods.answering import Asked
-from placing.physics.arrangements import bodies_of, fixed_of
+from placing.methods.scene_model import SceneModel
 from placing.physics.settling import SettleConfig
 from placing.plans.offering import OPTION_COLUMNS, OfferingConfig, offered_rows
 from placing.plans.robot_arranging import (
@@ -27,21 +30,18 @@ from placing.plans.robot_arranging import (
     arrange,
 )
 from placing.plans.robot_candidates import Candidate, candidates_of, in_falling_score
+from placing.plans.robot_scene import RobotConfig, placer_in
 from placing.robot.certificates import Certificate, World, certificate_of
-from placing.robot.checker import CheckerConfig, SceneChecker
-from placing.robot.distance_field import distance_field
-from placing.robot.driving import Floor
+from placing.robot.checker import CheckerConfig
 from placing.robot.errands import Boxes, Errand
-from placing.robot.exact import Exact
 from placing.robot.grasps import GraspSheet
 from placing.robot.model import RobotModel
 from placing.robot.paths import connect
 from placing.robot.planning import NO_PATH, Motion, PlanningConfig, Refusal, Segment
 from placing.robot.putting import Placer
-from placing.robot.seeking import Seeker
-from placing.robot.truth import Truth
 from placing.rooms.checks import footprint
 from placing.scene import Layout, SceneObject, standing_at
+from placing.tasks import questions
 
 Array = NDArray[np.float64]
 Poses = Mapping[str, Array]
@@ -235,23 +235,25 @@ def plan_scenario(
 
     `points_m` (p, 3) is the scan of the scene.
     """
-    model, sheet = robot
-    margin_m, checking = config.settling.margin_m, config.checking
     items = {item.object_id: item for item in layout.objects}
     (start,) = layout.arrangements
     starts = {p.object_id: p.T_world_object for p in start.placements}
-    checker = SceneChecker(model, distance_field(points_m, checking), checking)
-    floor = Floor(checker, config.planning, layout.scene)
-    fixed, bodies = fixed_of(layout, margin_m), bodies_of(layout.objects, margin_m)
-    with Truth(model, fixed, checking, config.settling) as truth:
-        exact = Exact(truth, bodies, margin_m, config.planning.contact_m)
-        seeker = Seeker(checker, floor, exact, sheet, config.planning, seed)
-        fetching = Fetching(Placer(seeker, exact), items, starts)
+    robot_config = RobotConfig(config.checking, config.planning, config.settling)
+    args = points_m, layout, *robot, robot_config, seed
+    with placer_in(asked.model.scene, *args) as placer:
+        fetching = Fetching(placer, items, starts)
         possible = possible_in(asked, layout, config.offering)
         distance_m = asked.model.settings.decision.min_distance_m
         standing = Standing(items, (), distance_m)
         robotic = arrange(possible, standing, fetching.robot, config.robot_placing)
         return robotic, *fetched(fetching, robotic, world_of(layout.scene))
+
+
+def asked_about(model: SceneModel, stream: Callable[..., Generator]) -> Asked:
+    """Return the question about all objects of a scenario; `stream` makes generators."""
+    (question,) = questions(model.scene, "empty")
+    # `dp` asks for no K and no omega.
+    return Asked(partial(stream, model.scene.scene), model, question, Choices(1, 1.0))
 
 
 def possible_in(

@@ -1,8 +1,8 @@
 """Where the base can go: a lattice of base poses on the floor of a scene.
 
 Poses are free with the arm as it is carried and the torso low; they are neighbours in
-place, one heading apart, or at one heading, one cell apart. What can be reached from
-the most open spot is found once; every way starts and ends there.
+place, one heading apart, or at one heading, one cell apart. How far everything is from
+the most open spot is found once, and guides every search for a way.
 
 Letters: n poses of the lattice, e edges, t rows of a path.
 """

@@ -23,7 +23,7 @@ class Errand:
     grasp: str = ""
     """The only one that is tried, by name; empty: any."""
     start: Array | None = None
-    """(4 + a,) where the base starts; None: where the floor is most open."""
+    """(4 + a,) whose base pose is the start; None: where the floor is most open."""
 
     @property
     def alone(self) -> "Errand":

@@ -44,11 +44,7 @@ def solutions_at(
     They are whose each solution is (k,), and the solutions (k, a) as `arm_solutions`
     returns them, without its second, finer try.
     """
-    tree, n = model.tree, model.settings.n_tries
-    lift = np.tile(np.eye(4), (len(torso_m), 1, 1))
-    lift[:, :3] = tree.T_parent_joint[1]
-    up = tree.T_parent_joint[1][:, :3] @ tree.axis[1]
-    lift[:, :3, 3] += np.asarray(torso_m)[:, None] * up
+    n, lift = model.settings.n_tries, _lift(model, np.asarray(torso_m))
     Ts = (np.linalg.inv(lift) @ Ts_base_tool @ model.T_tool_frame)[:, :3]
     if model.arm is None:
         found = [numerical.solutions(model, T, n) for T in Ts]
@@ -70,8 +66,8 @@ def follow(model: RobotModel, q: Array, Ts_world_tool: Array) -> Array:
     """
     T_world_base = rigid.homogeneous(rigid.from_yaw(q[2], (q[0], q[1], 0.0)))
     Ts = np.array([rigid.homogeneous(T) for T in Ts_world_tool])
-    lift, tool = _lift_and_tool(model, q[3])
-    Ts = (np.linalg.inv(T_world_base @ lift) @ Ts @ np.linalg.inv(tool))[:, :3]
+    T_world_torso = T_world_base @ _lift(model, q[3])
+    Ts = (np.linalg.inv(T_world_torso) @ Ts @ model.T_tool_frame)[:, :3]
     arms = np.empty((len(Ts), model.n_arm))
     n = _follow(model, np.ascontiguousarray(Ts), np.asarray(q[4:], float), arms)
     return np.hstack([np.tile(np.asarray(q[:4], float), (n, 1)), arms[:n]])
@@ -91,21 +87,20 @@ def _follow(model: RobotModel, Ts: Array, arm: Array, out: Array) -> int:
     return len(Ts)
 
 
-def _lift_and_tool(model: RobotModel, torso_m: float) -> tuple[Array, Array]:
-    """Return the torso's frame in the base's, and the tool in the last, (4, 4) each."""
-    tree = model.tree
-    lift, tool = np.eye(4), np.eye(4)
-    lift[:3] = tree.T_parent_joint[1]
-    lift[:3, 3] += lift[:3, :3] @ tree.axis[1] * torso_m
-    tool[:3] = tree.T_frame_tool
-    return lift, tool
+def _lift(model: RobotModel, torso_m: Array) -> Array:
+    """Return the torso's frame in the base's at heights (...), shape (..., 4, 4)."""
+    joint = np.eye(4)
+    joint[:3] = model.tree.T_parent_joint[1]
+    lift = np.tile(joint, (*np.shape(torso_m), 1, 1))
+    up = joint[:3, :3] @ model.tree.axis[1]
+    lift[..., :3, 3] += np.asarray(torso_m)[..., None] * up
+    return lift
 
 
 def _wrist(model: RobotModel, T_base_tool: Array, torso_m: float) -> Array:
     """Return the last frame of the arm in the frame of the torso, (3, 4)."""
-    lift, tool = _lift_and_tool(model, torso_m)
-    T_base_wrist = rigid.homogeneous(T_base_tool) @ np.linalg.inv(tool)
-    return (np.linalg.inv(lift) @ T_base_wrist)[:3]
+    T_base_wrist = rigid.homogeneous(T_base_tool) @ model.T_tool_frame
+    return (np.linalg.inv(_lift(model, np.array(torso_m))) @ T_base_wrist)[:3]
 
 
 def _pans(arm: pr2_arm.Pr2Arm, n: int) -> Array:

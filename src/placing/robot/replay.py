@@ -1,4 +1,4 @@
-"""Judge a certificate in a world of its own, with nothing of the planner.
+"""Judge a certificate in a world of its own, without the planner.
 
 The robot walks every path again, among the true furniture and the objects that stood
 there, at a finer step than it was planned with: its joints keep their limits, nothing

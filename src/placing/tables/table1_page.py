@@ -15,8 +15,8 @@ NOTE = (
     "chosen by the same density among all placements that the robot can carry out. "
     "An object for which no placement is left is not placed: it has no error and is "
     "counted, so the rows are not about the same objects; the ratios below are. Every "
-    "placement was planned for the PR2 in the point cloud and checked among the true "
-    "furniture."
+    "motion that counts was planned for the PR2 in the point cloud and accepted by the "
+    "exact check among the true furniture."
 )
 PAPER_NOTE = (
     "*paper*: its Table 1, in its own rooms. Its last column is lost in print (12 "
