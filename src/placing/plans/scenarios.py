@@ -250,7 +250,7 @@ def plan_scenario(
 
 
 def asked_about(model: SceneModel, stream: Callable[..., Generator]) -> Asked:
-    """Return the question about all objects of a scenario; `stream` makes generators."""
+    """Return the question about all objects of a scenario, with its streams."""
     (question,) = questions(model.scene, "empty")
     # `dp` asks for no K and no omega.
     return Asked(partial(stream, model.scene.scene), model, question, Choices(1, 1.0))
