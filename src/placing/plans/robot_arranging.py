@@ -173,7 +173,7 @@ class Asking:
         self._alone: dict[Candidate, Motion | Refusal] = {}
         self._out_of_reach: dict[tuple[str, int], Refusal] = {}
         self._planned: dict[Attempt, Motion | Refusal] = {}
-        self._carried_out: dict[Attempt, Motion | Refusal] = {}
+        self._carried_out: dict[tuple, Motion | Refusal] = {}
         self._ruled_out: dict[Candidate, list[frozenset[Candidate]]] = {}
 
     def split(
@@ -263,7 +263,7 @@ class Asking:
         if isinstance(alone, Refusal):
             self._alone[candidate] = alone
         elif len(known) >= MOST_REJECTED:
-            # ASSUME: the search has to end; so often none of hundreds was rejected.
+            # ASSUME: the search has to end, and other places are as good.
             self._alone[candidate] = Refusal(REJECTED, ())
 
     def _carry_out(
@@ -273,7 +273,8 @@ class Asking:
         boxes: Mapping[str, Array],
     ) -> Motion | Refusal:
         """Return how an object is truly put where others were, asked only once."""
-        key = candidate, placed
+        stands = tuple((name, boxes[name].tobytes()) for name in sorted(boxes))
+        key = candidate, stands
         if key not in self._carried_out:
             found = self._ask(self._robot.carry_out, candidate, boxes)
             self._carried_out[key] = found
