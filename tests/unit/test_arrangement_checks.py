@@ -112,3 +112,9 @@ def test_a_room_without_what_its_kind_needs_is_named():
     said = lacks(layout(SOUND))
     assert any("no object of category pen, as every office needs" in s for s in said)
     assert not any("category book" in line for line in said)
+
+
+def test_what_is_too_small_for_its_shape_is_a_block_of_its_size():
+    egg = SceneObject("egg1", "food", "bread", (0.063, 0.072, 0.052), 0.06, True, True)
+    body = bodies_of([egg], 0.001)["egg1"]
+    assert np.allclose(np.ptp(body.corners_m, axis=0) + 0.002, egg.size_m, atol=1e-4)

@@ -2,12 +2,14 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import lru_cache
 
+import trimesh
 from shapely import MultiPoint, Polygon
 
 from placing import rigid
 from placing.dressing import WALLS, meshes_of
+from placing.errors import BadInput
 from placing.physics.bodies import Body, Piece, body_of, fixed_pieces
 from placing.physics.settling import SettleConfig, Settled, settle
 from placing.rigid import Array
@@ -16,6 +18,8 @@ from placing.shapes.objects import object_shape
 
 TOLERANCE_M = 0.001
 """Guards the comparison of an outline with what touches it."""
+N_BODIES = 256
+"""Bodies that are kept; those of a scene are fewer."""
 FLOOR_M = 0.01
 """What is carried by walls below this height is carried by the floor."""
 
@@ -61,12 +65,18 @@ def bodies_of(objects: Iterable[SceneObject], margin_m: float) -> dict[str, Body
     }
 
 
-@cache
+@lru_cache(maxsize=N_BODIES)
 def _body(
     shape: str, size_m: tuple[float, float, float], mass_kg: float, margin_m: float
 ) -> Body:
     """Return the body of an object; the scenes of a fold share most of theirs."""
-    return body_of(object_shape(shape, size_m).mesh, mass_kg, margin_m)
+    try:
+        mesh = object_shape(shape, size_m).mesh
+    except BadInput:
+        # ASSUME: what designers made smaller than the shape of its category has parts
+        # (an egg as bread, a butter knife as spatula) is a block.
+        mesh = trimesh.creation.box(size_m)
+    return body_of(mesh, mass_kg, margin_m)
 
 
 def fixed_of(layout: Layout, margin_m: float) -> dict[str, tuple[Piece, ...]]:
