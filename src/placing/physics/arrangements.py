@@ -4,17 +4,15 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
-import trimesh
 from shapely import MultiPoint, Polygon
 
 from placing import rigid
 from placing.dressing import WALLS, meshes_of
-from placing.errors import BadInput
+from placing.object_meshes import object_mesh
 from placing.physics.bodies import Body, Piece, body_of, fixed_pieces
 from placing.physics.settling import SettleConfig, Settled, settle
 from placing.rigid import Array
 from placing.scene import Arrangement, Layout, Placement, SceneObject
-from placing.shapes.objects import object_shape
 
 TOLERANCE_M = 0.001
 """Guards the comparison of an outline with what touches it."""
@@ -70,13 +68,7 @@ def _body(
     shape: str, size_m: tuple[float, float, float], mass_kg: float, margin_m: float
 ) -> Body:
     """Return the body of an object; the scenes of a fold share most of theirs."""
-    try:
-        mesh = object_shape(shape, size_m).mesh
-    except BadInput:
-        # ASSUME: what designers made smaller than the shape of its category has parts
-        # (an egg as bread, a butter knife as spatula) is a block.
-        mesh = trimesh.creation.box(size_m)
-    return body_of(mesh, mass_kg, margin_m)
+    return body_of(object_mesh(shape, size_m), mass_kg, margin_m)
 
 
 def fixed_of(layout: Layout, margin_m: float) -> dict[str, tuple[Piece, ...]]:

@@ -80,7 +80,7 @@ def is_convex(mesh: trimesh.Trimesh) -> bool:
     """Return whether a mesh is closed and fills its convex hull."""
     if not mesh.is_watertight:
         return False
-    return abs(mesh.volume) >= CONVEX_SHARE * mesh.convex_hull.volume
+    return abs(mesh.volume) >= CONVEX_SHARE * ConvexHull(mesh.vertices).volume
 
 
 def shrunk_hull(vertices_m: Array, margin_m: float) -> Piece:

@@ -18,6 +18,7 @@ from trimesh import Trimesh
 from placing import rigid, seeds
 from placing.dressing import WALLS, Meshes, meshes_of
 from placing.errors import unknown
+from placing.object_meshes import object_mesh
 from placing.pictures.cameras import Camera, corners_of, framing
 from placing.pictures.labels import INK, LINE, PAPER
 from placing.pictures.renderer import Picture, hidden, render
@@ -27,7 +28,6 @@ from placing.robot.film import Film
 from placing.robot.model import RobotModel
 from placing.robot.posing import link_poses_over
 from placing.scene import Layout
-from placing.shapes.objects import object_shape
 
 Array = NDArray[np.float64]
 
@@ -91,7 +91,7 @@ class Stage:
         for name, T in poses:
             if np.isfinite(T).all():
                 item = items[name]
-                mesh = object_shape(item.shape, item.size_m).mesh.copy()
+                mesh = object_mesh(item.shape, item.size_m).copy()
                 found[name] = mesh.apply_transform(rigid.homogeneous(T))
         return found
 

@@ -13,13 +13,13 @@ from trimesh import Trimesh
 
 from placing import rigid
 from placing.clouds.ply import Cloud
+from placing.object_meshes import object_mesh
 from placing.pictures.robot import part_meshes
 from placing.robot.certificates import Certificate
 from placing.robot.film import Film, PlaybackConfig, Stretch, film, stretches
 from placing.robot.model import RobotModel
 from placing.robot.posing import link_poses_over
 from placing.scene import PlacingArea, Scene, SceneObject
-from placing.shapes.objects import object_shape
 
 Array = NDArray[np.float64]
 
@@ -128,7 +128,7 @@ def _over(poses: Mapping[str, Array]) -> Array:
 
 def mesh_of(item: SceneObject) -> Trimesh:
     """Return the mesh of an object in its own frame."""
-    return object_shape(item.shape, item.size_m).mesh
+    return object_mesh(item.shape, item.size_m)
 
 
 def turns(film: Film) -> list[tuple[str, slice]]:
