@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from placing.errors import BadInput
+from placing.errors import UnknownName
 from placing.object_meshes import object_mesh
 
 
@@ -15,5 +15,5 @@ def test_a_mesh_fills_its_box_also_where_the_shape_has_no_room(size_m):
 
 
 def test_a_shape_that_is_not_known_is_one_line():
-    with pytest.raises(BadInput, match="object shape"):
+    with pytest.raises(UnknownName, match="object shape"):
         object_mesh("loaf_of_nothing", (0.1, 0.1, 0.1))
