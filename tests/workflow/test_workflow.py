@@ -20,6 +20,8 @@ NOTHING = "Nothing to be done (all requested files are present and up to date)."
 # Recordings hold random identifiers, pictures of text depend on nothing checked here,
 # and times differ in every run.
 NOT_COMPARED = {"recordings", "logs", "benchmarks", "run.json"}
+STUDY_S = 1500
+"""A study that hangs is given up; on two busy cores it takes ten minutes."""
 
 
 def copy_project(folder):
@@ -56,7 +58,7 @@ def start(folder, *words, configs=("small.yaml",), **kwargs):
 def snakemake(folder, *words, code=0, **kwargs):
     """Return what Snakemake says, after checking how it ended."""
     process = start(folder, *words, **kwargs)
-    said, _ = process.communicate(timeout=600)
+    said, _ = process.communicate(timeout=STUDY_S)
     assert process.returncode == code, said[-5000:]
     return said
 

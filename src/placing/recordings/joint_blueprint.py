@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import numpy as np
-import rerun as rr
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
@@ -13,6 +12,7 @@ from placing.recordings.joint import JointRecording
 from placing.recordings.joint_entities import log_static, outline
 from placing.recordings.joint_steps import TIMELINE, log_steps
 from placing.recordings.joint_words import label_of
+from placing.recordings.stream import recording_stream
 
 CLOSE_M, NEAR_DEG = 1.5, 30.0
 """Distance and elevation of the near eye, which looks below shelves."""
@@ -26,14 +26,8 @@ NEAR = ("$origin/**", "- $origin/names/all")
 
 def write_joint(path: Path, content: JointRecording) -> None:
     """Write the recording of a joint arrangement, whole or not at all."""
-    rr.set_strict_mode(True)
     names = (content.dataset, content.scene, "joint", content.method)
-    stream = rr.RecordingStream(
-        "placing",
-        recording_id="-".join([*names, f"fold{content.fold}"]),
-        send_properties=False,
-    )
-    stream.set_log_time_enabled(False)
+    stream = recording_stream([*names, f"fold{content.fold}"])
     eye = eye_of(content)
     with replacing(path) as part:
         stream.save(part)

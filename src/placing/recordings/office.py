@@ -19,6 +19,7 @@ from placing.pictures.shading import face_colours, joined
 from placing.recordings import blueprint
 from placing.recordings.content import Mesh
 from placing.recordings.entities import AMBIENT, LIGHT, triangles
+from placing.recordings.stream import recording_stream
 
 COLOUR_NAMES = dict(
     zip(KIND_COLOURS, ("blue", "cyan", "green", "purple", "red", "yellow"), strict=True)
@@ -78,14 +79,10 @@ def write_arranged(path: Path, office: Office) -> None:
 
 def _stream(path: Path, office: Office, number: int) -> rr.RecordingStream:
     """Return the stream of a figure to a file, with the room in it."""
-    rr.set_strict_mode(True)
     of, layout = office.figure, office.layout
     name = f"figure{number}"
     names = (of.dataset, layout.scene, name, of.method, f"seed{of.seed}")
-    stream = rr.RecordingStream(
-        "placing", recording_id="-".join(names), send_properties=False
-    )
-    stream.set_log_time_enabled(False)
+    stream = recording_stream(names)
     stream.save(path)
     stream.send_recording_name(f"Figure {number}: {named(office)}, {of.method}")
     stream.log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)

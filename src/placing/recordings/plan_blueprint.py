@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-import rerun as rr
 import rerun.blueprint as rrb
 
 from placing.artifacts.atomic import replacing
 from placing.recordings.blueprint import BACKGROUND, Eye, eye_of_room, room
 from placing.recordings.plan import PlanRecording
 from placing.recordings.plan_entities import EYE, TIMELINE, log_plan
+from placing.recordings.stream import recording_stream
 
 HIDDEN = ("world/cloud/front", "world/areas/names")
 WHOLE = ("$origin/**", f"- /{EYE}/**")
@@ -18,14 +18,8 @@ SPEED = 2.0
 
 def write_plan(path: Path, content: PlanRecording) -> None:
     """Write the recording of a plan, whole or not at all."""
-    rr.set_strict_mode(True)
     names = (content.dataset, content.scene, "plan", content.task, content.constraints)
-    stream = rr.RecordingStream(
-        "placing",
-        recording_id="-".join([*names, f"fold{content.fold}"]),
-        send_properties=False,
-    )
-    stream.set_log_time_enabled(False)
+    stream = recording_stream([*names, f"fold{content.fold}"])
     ends = content.film.T_world_objects[-1, :, 4:]
     eye = eye_of_room(content.cloud.points, ends)
     with replacing(path) as part:

@@ -12,17 +12,13 @@ import rerun as rr
 from placing.artifacts.atomic import replacing
 from placing.recordings import blueprint, entities, pose_entities, use_entities
 from placing.recordings.content import SceneRecording
+from placing.recordings.stream import recording_stream
 
 
 def write_recording(path: Path, content: SceneRecording) -> None:
     """Write the recording of a scene with its blueprint, whole or not at all."""
-    rr.set_strict_mode(True)
     names = (content.dataset, content.scene, content.task, content.method)
-    recording_id = "-".join([*names, f"fold{content.fold}", f"seed{content.seed}"])
-    stream = rr.RecordingStream(
-        "placing", recording_id=recording_id, send_properties=False
-    )
-    stream.set_log_time_enabled(False)
+    stream = recording_stream([*names, f"fold{content.fold}", f"seed{content.seed}"])
     with replacing(path) as part:
         stream.save(part)
         _log(stream, content)
