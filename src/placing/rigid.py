@@ -148,6 +148,13 @@ def apply(T_a_b: Array, points_b: Array) -> Array:
     return points_b @ matrix(T_a_b[:4]).T + T_a_b[4:]
 
 
+def difference(T_world_a: Array, T_world_b: Array) -> tuple[float, float]:
+    """Return how far two poses are apart [m] and how far they are turned [deg]."""
+    cosine = min(1.0, float(abs(T_world_a[:4] @ T_world_b[:4])))
+    way = float(np.linalg.norm(T_world_a[4:] - T_world_b[4:]))
+    return way, float(np.rad2deg(2 * np.arccos(cosine)))
+
+
 def wrap(angle: Array) -> Array:
     """Return the angle in [-pi, pi), same shape [rad]."""
     return (np.asarray(angle) + np.pi) % (2 * np.pi) - np.pi

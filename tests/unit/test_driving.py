@@ -77,7 +77,7 @@ def test_a_scene_without_open_floor_is_one_line():
 
 
 def test_ways_with_an_object_are_as_short_as_those_of_an_exhaustive_search():
-    place, lattice = floor(), floor()._lattice
+    place, lattice = floor(), floor().lattice
     post = checker().with_boxes([(0.7, 0.7, 0.5, 0.1, 0.1, 1.0, 0.0)])
     tray = held("tray", (0.1, 0.3, 0.1), rigid.from_yaw(0.0, (0.05, 0.0, 0.0)))
     is_free = post.are_free(place.configurations(place.poses), tray)

@@ -9,12 +9,11 @@ from tqdm import tqdm
 
 from command import run
 from placing.artifacts.certificates import write_certificates
-from placing.artifacts.features import read_features
 from placing.artifacts.formats import write_table
-from placing.artifacts.scenes import read_scene
+from placing.artifacts.models import read_model
 from placing.artifacts.theta import read_learned
 from placing.clouds.ply import read_ply
-from placing.methods.scene_model import SceneModel, Settings
+from placing.methods.scene_model import Settings
 from placing.plans.robot_plans import plan_table, rows_of, tried_rows, tried_table
 from placing.plans.scenarios import ScenarioConfig, asked_about, plan_scenario, world_of
 from placing.robot.grasps import read_grasps
@@ -70,8 +69,7 @@ def main(
     rows, asked_for, found = [], [], []
     for path in tqdm(sorted(scenes.glob("*.json")), unit="scene", disable=None):
         name = path.stem
-        seen = read_features(features / f"{name}.npz")
-        scene_model = SceneModel(read_scene(path), *seen, learned, settings)
+        scene_model = read_model(path, features, learned, settings)
         asked = asked_about(scene_model, partial(generator, seed, "plan_scenarios"))
         points = np.asarray(read_ply(clouds / f"{name}.ply").points, float)
         args = asked, read(name), points, (model, sheet), planning, seed

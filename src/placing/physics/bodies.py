@@ -12,7 +12,7 @@ import trimesh
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
-from placing.physics.convex_parts import convex_parts
+from placing.physics.convex_parts import convex_parts, hull_volume
 from placing.rigid import Array
 
 CONVEX_SHARE = 0.98
@@ -80,7 +80,7 @@ def is_convex(mesh: trimesh.Trimesh) -> bool:
     """Return whether a mesh is closed and fills its convex hull."""
     if not mesh.is_watertight:
         return False
-    return abs(mesh.volume) >= CONVEX_SHARE * ConvexHull(mesh.vertices).volume
+    return bool(abs(mesh.volume) >= CONVEX_SHARE * hull_volume(mesh.vertices))
 
 
 def shrunk_hull(vertices_m: Array, margin_m: float) -> Piece:

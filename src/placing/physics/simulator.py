@@ -185,8 +185,6 @@ def motion(
     velocity, _ = pybullet.getBaseVelocity(i, world.client)
     T_world_end = np.array([w, x, y, z, *position])
     T_world_end[4:] = rigid.apply(T_world_end, -body.mass_centre_m[None])[0]
-    way = T_world_end[4:] - T_world_start[4:]
-    cosine = min(1.0, abs(T_world_end[:4] @ T_world_start[:4]))
-    turned_deg = np.rad2deg(2 * np.arccos(cosine))
-    distances = np.linalg.norm(way), -way[2], turned_deg, np.linalg.norm(velocity)
-    return tuple(float(value) for value in distances)  # type: ignore[return-value]
+    way_m, turned_deg = rigid.difference(T_world_end, T_world_start)
+    sunk_m = float(T_world_start[6] - T_world_end[6])
+    return way_m, sunk_m, turned_deg, float(np.linalg.norm(velocity))

@@ -20,7 +20,7 @@ from placing.plans.placing_order import Verdict
 from placing.plans.robot_candidates import Candidate
 from placing.plans.try_place import Found, Limits, place_most
 from placing.robot.planning import NO_PLACE, REJECTED, Motion, Refusal
-from placing.scene import Placement, SceneObject, standing_at, standing_box
+from placing.scene import Placement, SceneObject, standing_at
 
 Array = NDArray[np.float64]
 Put = Callable[[SceneObject, Array, Mapping[str, Array]], Motion | Refusal]
@@ -169,11 +169,10 @@ class Asking:
         """Put what is given where it stands."""
         self.tried: list[Tried] = []
         self._standing, self._robot = standing, robot
-        self._given = {p.object_id: self._box(p) for p in standing.given}
+        self._given = {p.object_id: p.T_world_object for p in standing.given}
         self._alone: dict[Candidate, Motion | Refusal] = {}
         self._out_of_reach: dict[tuple[str, int], Refusal] = {}
         self._planned: dict[Attempt, Motion | Refusal] = {}
-        self._carried_out: dict[tuple, Motion | Refusal] = {}
         self._ruled_out: dict[Candidate, list[frozenset[Candidate]]] = {}
 
     def split(
@@ -242,62 +241,51 @@ class Asking:
 
         Then the step that cannot is ruled out.
         """
-        steps, boxes = [], dict(self._given)
-        poses = {p.object_id: p.T_world_object for p in self._standing.given}
+        steps, poses = [], dict(self._given)
         for n, candidate in enumerate(order):
-            placed, name = frozenset(order[:n]), candidate.object_id
-            motion = self._carry_out(candidate, placed, boxes)
-            if isinstance(motion, Refusal):
-                self._rule_out(candidate, placed)
+            found = self._ask(self._robot.carry_out, candidate, poses)
+            if isinstance(found, Refusal):
+                self._rule_out(candidate, frozenset(order[:n]), found)
                 return None
-            steps.append(Step(candidate, motion, dict(poses)))
-            poses[name] = motion.T_world_object
-            boxes[name] = standing_at(self._standing.items[name], poses[name])
+            steps.append(Step(candidate, found, dict(poses)))
+            poses[candidate.object_id] = found.T_world_object
         return tuple(steps)
 
-    def _rule_out(self, candidate: Candidate, placed: frozenset[Candidate]) -> None:
+    def _rule_out(
+        self, candidate: Candidate, placed: frozenset[Candidate], found: Refusal
+    ) -> None:
         """Rule out a placement that cannot be carried out beside others, or at all."""
-        alone = self._carry_out(candidate, NOTHING, self._given)
+        self._note(candidate, placed, found)
         known = self._ruled_out.setdefault(candidate, [])
         known.append(placed)
+        alone = found
+        if placed:
+            alone = self._ask(self._robot.carry_out, candidate, self._given)
+            if isinstance(alone, Refusal):
+                self._note(candidate, NOTHING, alone)
         if isinstance(alone, Refusal):
             self._alone[candidate] = alone
         elif len(known) >= MOST_REJECTED:
             # ASSUME: the search has to end, and other places are as good.
             self._alone[candidate] = Refusal(REJECTED, ())
 
-    def _carry_out(
-        self,
-        candidate: Candidate,
-        placed: frozenset[Candidate],
-        boxes: Mapping[str, Array],
-    ) -> Motion | Refusal:
-        """Return how an object is truly put where others were, asked only once."""
-        stands = tuple((name, boxes[name].tobytes()) for name in sorted(boxes))
-        key = candidate, stands
-        if key not in self._carried_out:
-            found = self._ask(self._robot.carry_out, candidate, boxes)
-            self._carried_out[key] = found
-            if isinstance(found, Refusal):
-                self._note(candidate, placed, found)
-        return self._carried_out[key]
-
     def _plan(
         self, candidate: Candidate, placed: frozenset[Candidate]
     ) -> Motion | Refusal:
         """Return how an object would be put where others would stand."""
-        boxes = self._given | {c.object_id: self._placed_box(c) for c in placed}
-        found = self._ask(self._robot.plan, candidate, boxes)
+        poses = self._given | {c.object_id: self._left_at(c) for c in placed}
+        found = self._ask(self._robot.plan, candidate, poses)
         self._note(candidate, placed, found)
         return found
 
     def _ask(
-        self, put: Put, candidate: Candidate, boxes: Mapping[str, Array]
+        self, put: Put, candidate: Candidate, poses: Mapping[str, Array]
     ) -> Motion | Refusal:
-        """Return what the robot says to a placement among boxes."""
-        item = self._standing.items[candidate.object_id]
-        T = candidate.placement(item).T_world_object
-        return put(item, T, {name: boxes[name] for name in sorted(boxes)})
+        """Return what the robot says to a placement among objects at poses (7,)."""
+        items = self._standing.items
+        boxes = {name: standing_at(items[name], poses[name]) for name in sorted(poses)}
+        item = items[candidate.object_id]
+        return put(item, candidate.placement(item).T_world_object, boxes)
 
     def _note(
         self,
@@ -310,16 +298,11 @@ class Asking:
         among = tuple(sorted(c.object_id for c in placed))
         self.tried.append(Tried(candidate, among, refused.reason, refused.blockers))
 
-    def _placed_box(self, candidate: Candidate) -> Array:
-        """Return the box of a placed object, where the motion alone leaves it, (7,)."""
+    def _left_at(self, candidate: Candidate) -> Array:
+        """Return where the motion alone leaves an object, (7,)."""
         motion = self._alone[candidate]
         assert isinstance(motion, Motion), "what is placed can be placed alone"
-        item = self._standing.items[candidate.object_id]
-        return standing_at(item, motion.T_world_object)
-
-    def _box(self, placement: Placement) -> Array:
-        """Return the box around a placed object, shape (7,)."""
-        return standing_box(self._standing.items[placement.object_id], placement)
+        return motion.T_world_object
 
 
 class Exclusion:

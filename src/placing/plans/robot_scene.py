@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +15,11 @@ from placing.rigid import Array
 from placing.robot.checker import CheckerConfig, SceneChecker
 from placing.robot.distance_field import distance_field
 from placing.robot.driving import Floor
-from placing.robot.errands import Boxes, Errand
+from placing.robot.errands import Answer, Boxes, Errand
 from placing.robot.exact import Exact
 from placing.robot.grasps import GraspSheet
 from placing.robot.model import RobotModel
-from placing.robot.planning import PlanningConfig
+from placing.robot.planning import Motion, PlanningConfig, Refusal
 from placing.robot.putting import Placer
 from placing.robot.seeking import Seeker
 from placing.robot.truth import Truth
@@ -36,14 +37,14 @@ class RobotConfig:
 
 def robot_of(placer: Placer) -> Robot:
     """Return what the search for an order asks, answered by a planner."""
+    return Robot(partial(_put, placer.planned), partial(_put, placer.carried_out))
 
-    def errand(item: SceneObject, T_world_object: Array, boxes: Boxes) -> Errand:
-        return Errand(True, item, T_world_object, boxes)
 
-    return Robot(
-        lambda *asked: placer.planned(errand(*asked)),
-        lambda *asked: placer.carried_out(errand(*asked)),
-    )
+def _put(
+    answer: Answer, item: SceneObject, T_world_object: Array, boxes: Boxes
+) -> Motion | Refusal:
+    """Return how an object is put somewhere."""
+    return answer(Errand(True, item, T_world_object, boxes))
 
 
 @contextmanager

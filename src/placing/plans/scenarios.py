@@ -19,7 +19,6 @@ from shapely.geometry.base import BaseGeometry
 from placing.learning.learned import Choices
 from placing.methods.answering import Asked
 from placing.methods.scene_model import SceneModel
-from placing.physics.settling import SettleConfig
 from placing.plans.offering import OPTION_COLUMNS, OfferingConfig, offered_rows
 from placing.plans.robot_arranging import (
     Robot,
@@ -32,12 +31,11 @@ from placing.plans.robot_arranging import (
 from placing.plans.robot_candidates import Candidate, candidates_of, in_falling_score
 from placing.plans.robot_scene import RobotConfig, placer_in
 from placing.robot.certificates import Certificate, World, certificate_of
-from placing.robot.checker import CheckerConfig
-from placing.robot.errands import Boxes, Errand
+from placing.robot.errands import Answer, Boxes, Errand
 from placing.robot.grasps import GraspSheet
 from placing.robot.model import RobotModel
 from placing.robot.paths import connect
-from placing.robot.planning import NO_PATH, Motion, PlanningConfig, Refusal, Segment
+from placing.robot.planning import NO_PATH, Motion, Refusal, Segment
 from placing.robot.putting import Placer
 from placing.rooms.checks import footprint
 from placing.scene import Layout, SceneObject, standing_at
@@ -54,14 +52,11 @@ PICKUP_TABLE = "pickup_table"
 
 
 @dataclass(frozen=True)
-class ScenarioConfig:
+class ScenarioConfig(RobotConfig):
     """Sections of the configuration that planning a scenario looks at."""
 
     offering: OfferingConfig
     robot_placing: RobotPlacingConfig
-    planning: PlanningConfig
-    checking: CheckerConfig
-    settling: SettleConfig
 
 
 @dataclass(frozen=True)
@@ -76,14 +71,14 @@ class Fetching:
     @property
     def robot(self) -> Robot:
         """What the search for an order asks."""
+        placer = self.placer
         return Robot(
-            lambda *asked: self._put(self.placer.planned, *asked),
-            lambda *asked: self._put(self.placer.carried_out, *asked),
+            partial(self._put, placer.planned), partial(self._put, placer.carried_out)
         )
 
     def _put(
         self,
-        answer: Callable[[Errand], Motion | Refusal],
+        answer: Answer,
         item: SceneObject,
         T_world_object: Array,
         boxes: Boxes,
@@ -238,8 +233,7 @@ def plan_scenario(
     items = {item.object_id: item for item in layout.objects}
     (start,) = layout.arrangements
     starts = {p.object_id: p.T_world_object for p in start.placements}
-    robot_config = RobotConfig(config.checking, config.planning, config.settling)
-    args = points_m, layout, *robot, robot_config, seed
+    args = points_m, layout, *robot, config, seed
     with placer_in(asked.model.scene, *args) as placer:
         fetching = Fetching(placer, items, starts)
         possible = possible_in(asked, layout, config.offering)

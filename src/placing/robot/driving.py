@@ -39,8 +39,8 @@ class Floor:
                 " expected a scan with open floor"
             )
         self.start_pose = self._most_open()
-        self._lattice = self._joined()
-        self.reachable = np.flatnonzero(np.isfinite(self._lattice.distance_m))
+        self.lattice = self._joined()
+        self.reachable = np.flatnonzero(np.isfinite(self.lattice.distance_m))
 
     @property
     def start(self) -> Array:
@@ -108,7 +108,7 @@ class Floor:
     ) -> Array:
         """Return poses of the lattice between two configurations, (n, 3)."""
         root, goal = self._nearest(np.array([first[:3], last[:3]])).tolist()
-        nodes = checker.way(first, self._lattice, goal, root, held)
+        nodes = checker.way(first, self.lattice, goal, root, held)
         return self.poses[nodes[::-1]]
 
     def _most_open(self) -> int:

@@ -1,9 +1,10 @@
 """What the robot is asked to do with one object."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from placing.rigid import Array
+from placing.robot.planning import Motion, Refusal
 from placing.scene import SceneObject
 
 Boxes = Mapping[str, Array]
@@ -41,3 +42,7 @@ class Errand:
         start = b"" if self.start is None else self.start.tobytes()
         T = self.T_world_object.tobytes()
         return self.is_putting, self.item.object_id, T, self.grasp, start
+
+
+Answer = Callable[[Errand], Motion | Refusal]
+"""Says how an errand is done, or why it cannot be."""

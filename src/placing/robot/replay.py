@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from placing import rigid
 from placing.physics.bodies import Body
 from placing.physics.settling import SettleConfig
 from placing.physics.simulator import add_fixed, new_world
@@ -19,7 +20,7 @@ from placing.robot.letting_go import Fixed, let_go, moved
 from placing.robot.puppet import Puppet
 from placing.robot.replay_config import ReplayConfig
 from placing.robot.settings import RobotSettings
-from placing.robot.walking import Failed, Walk, difference
+from placing.robot.walking import Failed, Walk
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ def judge(
     finally:
         walk.clear()
     certificate = walk.certificate
-    error = difference(end, certificate.T_world_object)
+    error = rigid.difference(end, certificate.T_world_object)
     still = {
         other: tuple(moved(piece, bodies[other], T) for piece in bodies[other].pieces)
         for other, T in certificate.standing.items()

@@ -77,15 +77,13 @@ class Seeker:
         Raises `BadInput` where the robot cannot stand at its start.
         """
         self._check_start(errand.start)
-        search = self._search(errand)
+        bases = self._standing_places(errand)
+        search = self._search(errand, self._touching(errand, bases))
         if search.grasps:
             search.reached(NO_PLACE)
-            bases = self._standing_places(search)
-            if len(bases):
-                self._let_touch(search, errand)
-                motion = self._accepted(search, bases, complaint)
-                if motion is not None:
-                    return motion
+            motion = self._accepted(search, bases, complaint) if len(bases) else None
+            if motion is not None:
+                return motion
         blamed = to_blame(search, errand.boxes, self.config.blame_m)
         return Refusal(search.reason, blamed)
 
@@ -125,35 +123,36 @@ class Seeker:
         """Return the checker with boxes, and that of an object where it stands."""
         return self.among({**boxes, OWN: standing_at(item, T_world_object)})
 
-    def _search(self, errand: Errand) -> Search:
-        """Return a search that has not begun; the object is where it was asked for."""
-        item, T = errand.item, errand.T_world_object
-        grasps = self.grasps(item)
+    def _search(self, errand: Errand, T_world_object: Array) -> Search:
+        """Return a search that has not begun, with the object where it touches."""
+        item, grasps = errand.item, self.grasps(errand.item)
         return Search(
             errand.is_putting,
-            T,
+            T_world_object,
             [grasps[name] for name in grasps if errand.grasp in ("", name)],
             self.among(errand.boxes),
-            self.among_all(errand.boxes, item, T),
+            self.among_all(errand.boxes, item, T_world_object),
             self.checker,
             errand.start,
-            self.query(item, T),
+            self.query(item, errand.T_world_object),
             self.config.n_paths,
         )
 
-    def _let_touch(self, search: Search, errand: Errand) -> None:
-        """Lower or lift the object that is put down until it touches what is below."""
-        if errand.is_putting:
-            item, boxes = errand.item, errand.boxes
-            T = self.exact.contact(item, errand.T_world_object, boxes)
-            search.T_world_object = T
-            search.among = self.among_all(boxes, item, T)
+    def _touching(self, errand: Errand, bases: Array) -> Array:
+        """Return where an object that is put down touches what is below, (7,).
 
-    def _standing_places(self, search: Search) -> Array:
+        Where no base (b, 3) is left to do so, it is not asked.
+        """
+        if not errand.is_putting or not len(bases):
+            return errand.T_world_object
+        return self.exact.contact(errand.item, errand.T_world_object, errand.boxes)
+
+    def _standing_places(self, errand: Errand) -> Array:
         """Return where the robot can stand to reach a point of the plan, (b, 3)."""
-        key = search.T_world_object[4:6].tobytes(), search.without.boxes
+        checker = self.among(errand.boxes)
+        key = errand.T_world_object[4:6].tobytes(), checker.boxes
         if key not in self._places:
-            args = search.without, search.T_world_object, self.config
+            args = checker, errand.T_world_object, self.config
             self._places[key] = standing_places(self.floor, *args)
         return self._places[key]
 

@@ -103,7 +103,7 @@ class Walk:
         """Raise `Failed` if the object is not where it was to be."""
         if T_world_planned is None:
             raise Failed(f"{segment.name}: grasps what is nowhere")
-        error_m, error_deg = difference(T_world_found, T_world_planned)
+        error_m, error_deg = rigid.difference(T_world_found, T_world_planned)
         if error_m > self.config.max_error_m or error_deg > self.config.max_error_deg:
             raise Failed(
                 f"{segment.name}: the object is {error_m * 1e3:.0f} mm and "
@@ -150,10 +150,3 @@ def finer(path: Array, config: ReplayConfig) -> Array:
         share = np.linspace(0, 1, n + 1)[1:, None]
         rows.append((1 - share) * start + share * end)
     return np.concatenate(rows)
-
-
-def difference(T_world_a: Array, T_world_b: Array) -> tuple[float, float]:
-    """Return how far two poses are apart [m] and how far they are turned [deg]."""
-    cosine = min(1.0, float(abs(T_world_a[:4] @ T_world_b[:4])))
-    way = float(np.linalg.norm(T_world_a[4:] - T_world_b[4:]))
-    return way, float(np.rad2deg(2 * np.arccos(cosine)))

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
+from placing import rigid
 from placing.methods.answer_tables import LOCATION, ORIENTATION
 from placing.physics.settling import SettleConfig
 from placing.robot.certificates import Certificate
 from placing.robot.film import Film
-from placing.robot.walking import difference
 
 AXES = (*LOCATION, *ORIENTATION)
 EXECUTED_COLUMNS = (
@@ -45,7 +45,7 @@ def executed(
             rows.append(row | {"placed": False, "reason": reason})
             continue
         certificate = certificates[orders[name]]
-        error_m, error_deg = difference(final, certificate.T_world_object)
+        error_m, error_deg = rigid.difference(final, certificate.T_world_object)
         row |= _pose("planned", certificate.T_world_object)
         row |= {"grasp": certificate.grasp, "error_m": error_m, "error_deg": error_deg}
         reason = ""
