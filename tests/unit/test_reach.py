@@ -8,8 +8,9 @@ from test_driving import CONFIG, floor
 
 from placing import rigid
 from placing.robot.grasps import facing
+from placing.robot.hands import best_first, hands_at
 from placing.robot.model import tool_pose
-from placing.robot.reach import best_first, hands_at, standing_places
+from placing.robot.reach import standing_places
 
 T_WORLD_OBJECT = rigid.from_yaw(0.3, (2.95, 1.5, TOP_M + 0.06))
 
@@ -18,7 +19,7 @@ T_WORLD_OBJECT = rigid.from_yaw(0.3, (2.95, 1.5, TOP_M + 0.06))
 def hands():
     bases = standing_places(floor(), checker(), T_WORLD_OBJECT, CONFIG)
     T = np.concatenate([facing(0.4, np.pi / 4, 0.0), T_WORLD_OBJECT[4:]])
-    return bases, T, hands_at(checker(), bases, T)
+    return bases, T, hands_at(checker(), bases, T)[1]
 
 
 def test_the_robot_can_stand_at_its_standing_places():

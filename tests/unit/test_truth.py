@@ -187,3 +187,28 @@ def test_finer_steps_find_more():
             answers.append(bool(world.check_path(path)))
     assert answers == [False, True]
     assert checker().config.exact_step_m < checker().config.step_m
+
+
+def test_shut_fingers_reach_where_open_ones_do_not(truth):
+    tool = tool_pose(pr2(), HIGH)
+    truth.open_fingers(0.0)
+    block_m = body_of(block((0.02, 0.2, 0.2), (0, 0, 0)), 1.0, SETTLING.margin_m)
+    for ahead_m in np.arange(0.06, 0.0, -0.001):
+        at = rigid.compose(tool, rigid.from_yaw(0.0, (ahead_m, 0.0, 0.0)))
+        truth.put("plate", block_m, at)
+        if truth.hits(HIGH):
+            break
+    assert {hit.split("_")[-1] for hit in truth.hits(HIGH)} == {"link/plate"}
+    truth.open_fingers(pr2().settings.max_opening_m)
+    assert truth.hits(HIGH) == ()
+
+
+def test_fingers_may_reach_into_what_they_hold_but_not_through_it(truth):
+    small, T = (0.02, 0.02, 0.02), rigid.from_yaw(0.0, (0.0, 0.0, 0.0))
+    truth.open_fingers(0.0)
+    at = rigid.compose(tool_pose(pr2(), HIGH), T)
+    truth.put("nut", body_of(block(small, (0, 0, 0)), 0.1, SETTLING.margin_m), at)
+    assert truth.hits(HIGH, "nut", T) == ()
+    block_m = body_of(block((0.12, 0.3, 0.3), (0, 0, 0)), 1.0, SETTLING.margin_m)
+    truth.put("block", block_m, at)
+    assert any(hit.endswith("/block") for hit in truth.hits(HIGH, "block", T))

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from placing.rigid import Array
-from placing.robot.goals import Search
 from placing.robot.planning import GOAL_HIT
+from placing.robot.search import Search
 
 FLOOR_M = 0.05
 """What stands lower stands on the floor, where the base drives."""

@@ -25,6 +25,7 @@ from placing.robot.kernels import (
     are_free,
     edge_free,
     hand_boxes,
+    hands_clear,
     hands_free,
     state_hits,
     way,
@@ -59,6 +60,8 @@ class CheckerConfig(FieldConfig):
     """As `step_m`, where the exact check goes over a finished path."""
     touch_depth_m: float
     """Deepest overlap of what is held while it is put down or lifted."""
+    finger_m: float
+    """Deepest overlap of the fingers with what they hold."""
 
 
 @dataclass(frozen=True)
@@ -146,6 +149,20 @@ class SceneChecker:
         hands_free(self._body(held), self._around, wrists, touching, out)
         return out
 
+    def are_hands_clear(
+        self, places: Array, T_world_tool: Array, held: Held | None = None
+    ) -> NDArray[np.bool_]:
+        """Return whether base and torso are clear of the hand with the tool at (4, 4).
+
+        Places are x, y, yaw and a height of the torso (n, 4), what is returned (n,).
+        Where they are not, no configuration with the tool there is free.
+        """
+        wrist = self._wrists(T_world_tool[None])[0]
+        out = np.empty(len(places), np.bool_)
+        args = self.model.tree, self._body(held), self._around
+        hands_clear(*args, np.ascontiguousarray(places, float), wrist, out)
+        return out
+
     def hand_hits(
         self, T_world_tool: Array, held: Held | None = None, touching: bool = False
     ) -> tuple[int, ...]:
@@ -196,14 +213,23 @@ class SceneChecker:
         return Hits(bool(scene), bool(itself), tuple(np.flatnonzero(boxes).tolist()))
 
     def way(
-        self, q: Array, lattice: Lattice, goal: int, root: int, held: Held | None = None
+        self,
+        q: Array,
+        lattice: Lattice,
+        goal: int,
+        root: int,
+        held: Held | None = None,
+        is_lost: NDArray[np.bool_] | None = None,
     ) -> NDArray[np.int64]:
         """Return numbers of the poses of a lattice on the way from `goal` to `root`.
 
-        Torso and arm are those of a configuration (4 + a,) that is free of itself.
+        Torso and arm are those of a configuration (4 + a,) that is free of itself. The
+        poses (n,) found to have no way to `root` are added to `is_lost`.
         """
+        if is_lost is None:
+            is_lost = np.zeros(len(lattice.poses), np.bool_)
         args = self.model.tree, self._body(held), self._around
-        return way(*args, np.asarray(q, float), lattice, goal, root)
+        return way(*args, np.asarray(q, float), lattice, goal, root, is_lost)
 
     def _wrists(self, Ts_world_tool: Array) -> Array:
         """Return the last frame of the arm with the tool at (n, 4, 4), (n, 3, 4)."""

@@ -8,6 +8,7 @@ Letters: n poses of the lattice, e edges, t rows of a path.
 """
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
@@ -79,11 +80,14 @@ class Floor:
         checker: SceneChecker | None = None,
         held: Held | None = None,
         start: Array | None = None,
+        is_lost: NDArray[np.bool_] | None = None,
     ) -> Array | None:
         """Return a way of the base to the base pose of `goal`, (t, 4 + a), if any.
 
         The torso is low and the arm is that of `start`, by default as it is carried.
-        `checker` knows what stands there, by default furniture alone.
+        `checker` knows what stands there, by default furniture alone. Poses of the
+        lattice (n,) that have no way from the start are looked up in `is_lost`, and
+        added to it.
         """
         checker = checker or self.checker
         first = self.start if start is None else start.copy()
@@ -94,7 +98,7 @@ class Floor:
             return None
         if checker.is_edge_free(first, last, held):
             return np.array([first, last])
-        base = self._way(first, last, checker, held)
+        base = self._way(first, last, checker, held, is_lost)
         if not len(base):
             return None
         base = np.vstack([first[:3], base, last[:3]])
@@ -104,11 +108,16 @@ class Floor:
         return path if checker.is_path_free(path, held) else None
 
     def _way(
-        self, first: Array, last: Array, checker: SceneChecker, held: Held | None
+        self,
+        first: Array,
+        last: Array,
+        checker: SceneChecker,
+        held: Held | None,
+        is_lost: NDArray[np.bool_] | None,
     ) -> Array:
         """Return poses of the lattice between two configurations, (n, 3)."""
         root, goal = self._nearest(np.array([first[:3], last[:3]])).tolist()
-        nodes = checker.way(first, self.lattice, goal, root, held)
+        nodes = checker.way(first, self.lattice, goal, root, held, is_lost)
         return self.poses[nodes[::-1]]
 
     def _most_open(self) -> int:

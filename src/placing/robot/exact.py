@@ -84,6 +84,7 @@ class Exact:
                 if not segment.is_holding:
                     self.truth.put(name, self.bodies[name], motion.T_world_object)
                 is_known = segment.is_holding or is_line
+                self.truth.open_fingers(segment.opening_m)
                 hit = self.truth.check_path(
                     segment.path, name if is_known else None, T_tool_object, is_line
                 )

@@ -276,11 +276,12 @@ def _moved(q0, q1):
 
 
 @njit(cache=True)
-def way(tree, body, around, q, lattice, goal, root):
+def way(tree, body, around, q, lattice, goal, root, is_lost):
     """Return numbers of poses of a lattice from `goal` to `root`; none if no way is.
 
     Torso and arm are those of `q`, free of themselves. A* that checks a pose when it
     goes on from it: ways of furniture alone, which are known, bound what is left.
+    Poses from which there is no way to `root` are known by `is_lost` (n,), and added.
     """
     n, q = len(lattice.poses), q.copy()
     frames = np.empty((len(tree.axis), 3, 4))
@@ -288,7 +289,7 @@ def way(tree, body, around, q, lattice, goal, root):
     cost, back = np.full(n, np.inf), np.full(n, -1)
     is_done = np.zeros(n, np.bool_)
     left, cost[goal] = lattice.distance_m, 0.0
-    if not np.isfinite(left[goal] + left[root]):
+    if is_lost[goal] or not np.isfinite(left[goal] + left[root]):
         return np.empty(0, np.int64)
     todo = [(abs(left[goal] - left[root]), goal)]
     while len(todo) > 0 and not is_done[root]:
@@ -308,6 +309,8 @@ def way(tree, body, around, q, lattice, goal, root):
             if length < cost[j]:
                 cost[j], back[j] = length, i
                 heappush(todo, (length + abs(left[j] - left[root]), j))
+    # What was come by is all that is joined to the goal.
+    is_lost |= is_done
     return np.empty(0, np.int64)
 
 
@@ -339,6 +342,23 @@ def hands_free(body, around, wrists, touching, out):
             or _first_box(body, around, frames, centres, touching, last, 0)
             < len(around.boxes)
         )
+
+
+@njit(cache=True)
+def hands_clear(tree, body, around, places, wrist, out):
+    """Write into `out` (n,) whether base and torso are clear of what the hand carries.
+
+    They are at x, y, yaw and a height (n, 4), the last frame is at `wrist` (3, 4).
+    """
+    last, q = len(body.lever_m) - 3, np.zeros(len(body.lever_m))
+    frames = np.empty((last + 1, 3, 4))
+    centres = np.empty((len(body.frame), 3))
+    for i in range(len(places)):
+        q[:4] = places[i]
+        forward(tree, q, frames)
+        frames[last] = wrist
+        _place_links(body, frames, centres)
+        out[i] = not _hits_itself(body, around, frames, centres, (last, 2))
 
 
 @njit(cache=True)

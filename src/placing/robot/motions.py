@@ -8,36 +8,28 @@ import numpy as np
 from placing.rigid import Array
 from placing.robot.checker import Held, SceneChecker
 from placing.robot.driving import Floor
-from placing.robot.goals import Search
+from placing.robot.goals import Goal
 from placing.robot.paths import connect
-from placing.robot.planning import (
-    NO_PATH,
-    PICKING,
-    PUTTING,
-    Segment,
-)
-from placing.robot.reach import (
-    Goal,
-)
+from placing.robot.planning import NO_PATH, PICKING, PUTTING, Segment
+from placing.robot.search import Search
 
 
 def segments_of(search: Search, goal: Goal, floor: Floor) -> tuple[Segment, ...] | None:
     """Return the segments of a motion to a goal and back, if there are paths."""
     search.reached(NO_PATH)
     settings = search.without.model.settings
-    carry, stow = goal.carry, np.asarray(settings.stow)
     if search.is_putting:
         first, last = goal.down, goal.back
-        arms, checkers = (carry, stow), (search.without, search.among)
-        held = (goal.held, None)
+        checkers, held = (search.without, search.among), (goal.held, None)
+        leaving = np.asarray(settings.stow)
     else:
         first, last = goal.back[::-1], goal.down[::-1]
-        arms, checkers = (stow, carry), (search.among, search.without)
-        held = (None, goal.held)
-    arrive = _arrive(search, floor, checkers[0], held[0], arms[0], first[0])
+        checkers, held = (search.among, search.without), (None, goal.held)
+        leaving = goal.stance.carry
+    arrive = _arrive(search, goal, checkers[0], held[0], first[0])
     if arrive is None:
         return None
-    leave = _leave(search, floor, checkers[1], held[1], arms[1], last[-1])
+    leave = _leave(search, floor, checkers[1], held[1], leaving, last[-1])
     if leave is None:
         return None
     paths = (*arrive, first, last, leave)
@@ -51,31 +43,18 @@ def segments_of(search: Search, goal: Goal, floor: Floor) -> tuple[Segment, ...]
 
 
 def _arrive(
-    search: Search,
-    floor: Floor,
-    checker: SceneChecker,
-    held: Held | None,
-    arm: Array,
-    end: Array,
+    search: Search, goal: Goal, checker: SceneChecker, held: Held | None, end: Array
 ) -> tuple[Array, Array, Array] | None:
     """Return the ways of the base, of the torso and of the arm to `end`, if any."""
-    raised = np.concatenate([end[:4], arm])
-    low = raised.copy()
-    low[3] = floor.low_m
-    if not checker.is_edge_free(low, raised, held):
-        return None
-    start = floor.start if search.start is None else search.start.copy()
-    start[4:] = arm
-    drive = floor.path(low, checker, held, start)
-    if drive is None:
-        search.n_paths -= 1
-        return None
-    # The yaw of a path is continuous: what follows has as many turns as the drive.
-    turns = drive[-1, 2] - end[2]
+    drive = goal.stance.drive
+    raised = np.concatenate([end[:4], goal.stance.arm])
     reach = _connected(search, checker, raised, end, held)
     if reach is None:
         return None
-    lift = np.array([low, raised])
+    lift = np.array([raised, raised])
+    lift[0, 3] = drive[-1, 3]
+    # The yaw of a path is continuous: what follows has as many turns as the drive.
+    turns = drive[-1, 2] - end[2]
     for path in (lift, reach):
         path[:, 2] += turns
     return drive, lift, reach

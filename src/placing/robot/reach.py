@@ -1,14 +1,13 @@
-"""From where, and with which arm, the robot reaches a placement.
+"""From where the robot reaches a placement, and the straight lines that lead there.
 
 Base poses around the object (a Halton sequence on the reachable part of the floor),
 times heights of the torso, times grasps, times solutions of the arm: goals are those
 that are free, and from which straight lines lead up to where the path planner takes
 over and back to where the hand is off the object.
 
-Letters: b base poses, k goals, t rows of a path, a joints of the arm.
+Letters: b base poses, t rows of a path, a joints of the arm.
 """
 
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -18,30 +17,11 @@ from placing import rigid
 from placing.rigid import Array
 from placing.robot.checker import Held, SceneChecker
 from placing.robot.driving import Floor
-from placing.robot.grasps import Grasp
-from placing.robot.inverse import follow, solutions_at
-from placing.robot.model import RobotModel, tool_pose
+from placing.robot.inverse import follow
+from placing.robot.model import tool_pose
 from placing.robot.planning import PlanningConfig
 
 UP = np.array([0.0, 0.0, 1.0])
-MIN_FACING = -0.3
-"""Least cosine between where the fingers point and where the robot looks."""
-
-
-@dataclass(frozen=True)
-class Goal:
-    """A hand at an object, and the straight lines that lead there."""
-
-    grasp: Grasp
-    held: Held
-    carry: Array
-    """(a,) arm that carries the object to the base pose of the goal, or from it."""
-    T_world_object: Array
-    """(7,) where the hand lets go of it, or takes it."""
-    down: Array
-    """(t, 4 + a) straight down with the object, until it is let go."""
-    back: Array
-    """(t, 4 + a) straight back with the empty hand."""
 
 
 @cache
@@ -73,51 +53,6 @@ def standing_places(
     jittered = beside + (_halton(len(beside)) - 0.5) * cell
     poses = np.vstack([beside, jittered])
     return poses[checker.are_free(floor.configurations(poses))]
-
-
-def hands_at(checker: SceneChecker, bases: Array, T_world_tool: Array) -> Array:
-    """Return the arm's solutions at all bases and heights of the torso, (k, 4 + a)."""
-    model = checker.model
-    pointing = rigid.matrix(T_world_tool[:4])[:2, 0]
-    towards = T_world_tool[4:6] - bases[:, :2]
-    # The fingers do not point back at the robot.
-    facing = towards @ pointing >= MIN_FACING * np.linalg.norm(towards, axis=1)
-    heights = np.asarray(model.settings.torso_heights_m)
-    poses = np.repeat(bases[facing], len(heights), axis=0)
-    torso_m = np.tile(heights, int(facing.sum()))
-    which, arms = solutions_at(model, _seen_from(poses, T_world_tool), torso_m)
-    fixed = np.column_stack([poses, torso_m])[which]
-    return np.hstack([fixed, _near_to(arms, model.settings.carry, model)])
-
-
-def _seen_from(poses: Array, T_world_tool: Array) -> Array:
-    """Return the tool in the frames of base poses (n, 3), shape (n, 4, 4)."""
-    c, s = np.cos(poses[:, 2]), np.sin(poses[:, 2])
-    back = np.tile(np.eye(4), (len(poses), 1, 1))  # T_base_world
-    back[:, 0, 0], back[:, 0, 1], back[:, 1, 0], back[:, 1, 1] = c, s, -s, c
-    back[:, :2, 3] = -np.einsum("nij,nj->ni", back[:, :2, :2], poses[:, :2])
-    return back @ rigid.homogeneous(T_world_tool)
-
-
-def _near_to(arms: Array, other: tuple[float, ...], model: RobotModel) -> Array:
-    """Return solutions (k, a) with endless joints turned to less than half a turn."""
-    endless = ~np.isfinite(model.upper[4:])
-    return np.where(endless, rigid.near(arms, np.asarray(other)), arms)
-
-
-def best_first(rows: Array, carry: tuple[float, ...]) -> Array:
-    """Return solutions nearest to the carried arm first, one of each base before more.
-
-    Rows are (k, 4 + a), sorted into the same shape.
-    """
-    away = np.abs(rows[:, 4:] - np.asarray(carry)).max(1)
-    order = np.argsort(away, kind="stable")
-    _, base = np.unique(rows[order, :3], axis=0, return_inverse=True)
-    turn = np.zeros(len(rows), int)
-    seen: dict[int, int] = {}
-    for i, number in enumerate(base.ravel().tolist()):
-        turn[i] = seen[number] = seen.get(number, -1) + 1
-    return rows[order][np.argsort(turn, kind="stable")]
 
 
 def has_hand_lines(

@@ -17,13 +17,15 @@ from placing.robot.checker import Held, SceneChecker
 from placing.robot.driving import Floor
 from placing.robot.errands import Boxes, Errand
 from placing.robot.exact import Exact
-from placing.robot.goals import Search, goals_of
+from placing.robot.goals import goals_of
 from placing.robot.grasps import Grasp, GraspSheet, grasps_of
+from placing.robot.hands import Hands, Mask
 from placing.robot.held_shapes import carried, cells_of
 from placing.robot.motions import segments_of
 from placing.robot.paths import Query
 from placing.robot.planning import FALLS, NO_PLACE, Motion, PlanningConfig, Refusal
 from placing.robot.reach import standing_places
+from placing.robot.search import Search
 from placing.scene import SceneObject, standing_at
 from placing.seeds import generator
 
@@ -56,7 +58,9 @@ class Seeker:
         self.config, self.seed = config, seed
         self._sheet, self._carrying = sheet, Carrying(checker)
         self._grasps: dict[str, dict[str, tuple[Grasp, Held]]] = {}
-        self._places: dict[tuple, Array] = {}
+        self._places: dict[bytes, Array] = {}
+        self._stands: dict[tuple, Mask] = {}
+        self._hands = Hands(checker)
 
     def grasps(self, item: SceneObject) -> dict[str, tuple[Grasp, Held]]:
         """Return the grasps of an object that fit the gripper, with what is held."""
@@ -77,22 +81,20 @@ class Seeker:
         Raises `BadInput` where the robot cannot stand at its start.
         """
         self._check_start(errand.start)
-        bases = self._standing_places(errand)
-        search = self._search(errand, self._touching(errand, bases))
+        search = self._search(errand)
         if search.grasps:
             search.reached(NO_PLACE)
-            motion = self._accepted(search, bases, complaint) if len(bases) else None
+            can_stand = search.stands.any()
+            motion = self._accepted(search, complaint) if can_stand else None
             if motion is not None:
                 return motion
         blamed = to_blame(search, errand.boxes, self.config.blame_m)
         return Refusal(search.reason, blamed)
 
-    def _accepted(
-        self, search: Search, bases: Array, complaint: Complaint
-    ) -> Motion | None:
-        """Return the first motion that is accepted, from one of the bases (b, 3)."""
+    def _accepted(self, search: Search, complaint: Complaint) -> Motion | None:
+        """Return the first motion that is accepted."""
         fallen_m = np.inf
-        for goal in goals_of(search, bases, self.floor, self._carrying, self.config):
+        for goal in goals_of(search, self.floor, self._carrying, self.config):
             # What falls from some height falls from above it.
             if goal.grasp.release_m >= fallen_m:
                 continue
@@ -123,38 +125,42 @@ class Seeker:
         """Return the checker with boxes, and that of an object where it stands."""
         return self.among({**boxes, OWN: standing_at(item, T_world_object)})
 
-    def _search(self, errand: Errand, T_world_object: Array) -> Search:
+    def _search(self, errand: Errand) -> Search:
         """Return a search that has not begun, with the object where it touches."""
         item, grasps = errand.item, self.grasps(errand.item)
+        bases, stands = self._standing_places(errand)
+        T_world_object = errand.T_world_object
+        if errand.is_putting and stands.any():
+            T_world_object = self.exact.contact(item, T_world_object, errand.boxes)
         return Search(
             errand.is_putting,
             T_world_object,
+            bases,
+            stands,
             [grasps[name] for name in grasps if errand.grasp in ("", name)],
             self.among(errand.boxes),
             self.among_all(errand.boxes, item, T_world_object),
             self.checker,
+            self._hands,
             errand.start,
             self.query(item, errand.T_world_object),
             self.config.n_paths,
         )
 
-    def _touching(self, errand: Errand, bases: Array) -> Array:
-        """Return where an object that is put down touches what is below, (7,).
+    def _standing_places(self, errand: Errand) -> tuple[Array, Mask]:
+        """Return where the robot can stand to reach a point of the plan, (b, 3).
 
-        Where no base (b, 3) is left to do so, it is not asked.
+        That is where nothing else stands; at which of these it can stand now is (b,).
         """
-        if not errand.is_putting or not len(bases):
-            return errand.T_world_object
-        return self.exact.contact(errand.item, errand.T_world_object, errand.boxes)
-
-    def _standing_places(self, errand: Errand) -> Array:
-        """Return where the robot can stand to reach a point of the plan, (b, 3)."""
-        checker = self.among(errand.boxes)
-        key = errand.T_world_object[4:6].tobytes(), checker.boxes
+        key = errand.T_world_object[4:6].tobytes()
         if key not in self._places:
-            args = checker, errand.T_world_object, self.config
+            args = self.checker, errand.T_world_object, self.config
             self._places[key] = standing_places(self.floor, *args)
-        return self._places[key]
+        bases, checker = self._places[key], self.among(errand.boxes)
+        if (key, checker.boxes) not in self._stands:
+            stands = checker.are_free(self.floor.configurations(bases))
+            self._stands[key, checker.boxes] = stands
+        return bases, self._stands[key, checker.boxes]
 
     def _check_start(self, start: Array | None) -> None:
         """Raise `BadInput` where the robot cannot stand at its start."""

@@ -30,7 +30,7 @@ from placing.rigid import Array
 from placing.robot.checker import CheckerConfig, levers
 from placing.robot.kernels import Spheres, Tree, n_steps
 from placing.robot.model import RobotModel, tool_pose
-from placing.robot.tree import fixed_values
+from placing.robot.tree import fixed_values, gripper_values
 
 AWAY_M = 100.0
 """Where the robot waits while an object is put down, and what is not in the scene."""
@@ -142,6 +142,13 @@ class Truth:
         away = (APART_M * i, 0.0, -AWAY_M)
         pybullet.resetBasePositionAndOrientation(i, away, (0, 0, 0, 1), self._client)
 
+    def open_fingers(self, opening_m: float) -> None:
+        """Hold the fingers so far apart from now on; they are longer when shut."""
+        for name, value in gripper_values(self._model.settings, opening_m).items():
+            pybullet.resetJointState(
+                self._robot, self._joints[name], value, physicsClientId=self._client
+            )
+
     def hits(
         self,
         q: Array,
@@ -151,8 +158,9 @@ class Truth:
     ) -> tuple[str, ...]:
         """Return what a configuration (4 + a,) hits, as sorted `link/thing` pairs.
 
-        The gripper may touch `held_id`, which moves with the tool if its pose there is
-        given. Put down or lifted (`touching`) it may overlap with things a little.
+        The gripper may reach into `held_id`, which moves with the tool if its pose
+        there is given. Put down or lifted (`touching`) it may overlap with things a
+        little.
         """
         self._set(np.asarray(q, float))
         if held_id is not None and T_tool_object is not None:
@@ -250,17 +258,16 @@ class Truth:
         pybullet.resetBasePositionAndOrientation(i, centre, (x, y, z, w), self._client)
 
     def _robot_hits(self, held_id: str | None) -> set[str]:
-        """Return what the robot overlaps with, but for what its gripper holds."""
+        """Return what the robot overlaps with, what its gripper holds if too deep."""
         found = set()
         for pair in near_pairs(self._world, self._robot):
             link, other = self._links[pair[0]], pair[1]
-            if other == self._robot:
-                hit = "/".join(sorted((link, self._links[pair[2]])))
-            elif link in self._gripper and self._world.names[other] == held_id:
-                continue
-            else:
-                hit = f"{link}/{self._world.names[other]}"
-            if hit not in found and overlaps(self._world, self._robot, pair):
+            is_self = other == self._robot
+            thing = self._links[pair[2]] if is_self else self._world.names[other]
+            is_held = not is_self and thing == held_id and link in self._gripper
+            depth_m = self._config.finger_m if is_held else 0.0
+            hit = "/".join(sorted((link, thing)) if is_self else (link, thing))
+            if hit not in found and self._is_overlap(self._robot, pair, depth_m):
                 found.add(hit)
         return found
 
@@ -270,9 +277,12 @@ class Truth:
         return {
             f"{held_id}/{self._world.names[pair[1]]}"
             for pair in near_pairs(self._world, i)
-            if pair[1] != self._robot
-            and any(o.depth_m >= depth_m for o in overlaps(self._world, i, pair))
+            if pair[1] != self._robot and self._is_overlap(i, pair, depth_m)
         }
+
+    def _is_overlap(self, i: int, pair: tuple[int, int, int], depth_m: float) -> bool:
+        """Return whether a body overlaps with one near it by at least `depth_m`."""
+        return any(o.depth_m >= depth_m for o in overlaps(self._world, i, pair))
 
 
 @contextmanager
