@@ -19,9 +19,10 @@ from placing.plans.robot_arranging import NOWHERE, RobotPlacingConfig
 from placing.plans.robot_plans import Planned
 from placing.plans.robot_scene import RobotConfig, placer_in, robot_of
 from placing.robot.grasps import GraspSheet, read_grasps
-from placing.robot.model import load_robot
+from placing.robot.model import RobotModel, load_robot
 from placing.robot.settings import RobotSettings, read_robot
 from placing.rooms.file import read_yaml
+from placing.scene import Layout
 
 log = logging.getLogger(__name__)
 
@@ -67,19 +68,29 @@ def main(
     model, every = load_robot(body), [read_options(path) for path in options]
     made = Planned(dataset, pd.concat(every), min_distance_m, robot_placing)
     for name in tqdm(sorted(robot_scenes), unit="scene", disable=None):
-        scene = read_scene(scenes / f"{name}.json")
-        points = read_ply(clouds / f"{name}.ply").points
-        args = read_layout(name), model, sheet, settings, seed
-        try:
-            with placer_in(scene, points, *args) as placer:
-                made.add(scene, robot_of(placer))
-        except NoFloor as error:
-            log.warning("%s", error)
-            made.add(scene, NOWHERE)
+        seen = scenes / f"{name}.json", clouds / f"{name}.ply"
+        add_scene(made, *seen, read_layout(name), (model, sheet, settings, seed))
     write_plans(plans, made.plans())
     write_table(tried, made.tried())
     write_certificates(certificates, robot[0], body.urdf, body.chain, made.certificates)
     log.info("%s: %d placements planned", dataset, len(made.certificates))
+
+
+def add_scene(
+    made: Planned,
+    scene: Path,
+    cloud: Path,
+    layout: Layout,
+    robot: tuple[RobotModel, GraspSheet, RobotConfig, int],
+) -> None:
+    """Plan the objects of a scene; nothing of it is kept but what is planned."""
+    asked = read_scene(scene)
+    try:
+        with placer_in(asked, read_ply(cloud).points, layout, *robot) as placer:
+            made.add(asked, robot_of(placer))
+    except NoFloor as error:
+        log.warning("%s", error)
+        made.add(asked, NOWHERE)
 
 
 def read_both(
