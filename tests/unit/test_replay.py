@@ -173,3 +173,15 @@ def test_a_finer_path_passes_all_way_points_in_small_steps():
     for row in path:
         assert np.abs(fine - row).max(1).min() < 1e-12
     assert np.abs(np.diff(fine, axis=0)).max() <= REPLAY.step_rad + 1e-12
+
+
+def test_only_what_the_torso_does_not_lift_may_roll_over_what_is_low():
+    with new_world(240, 0.7, 0.001) as world:
+        puppet = Puppet(world.client, settings(), is_fixed=False)
+        lifted = {name for name, i in puppet.links.items() if puppet.is_lifted(i)}
+    assert {
+        "torso_lift_link",
+        "l_gripper_palm_link",
+        *settings().gripper_links,
+    } <= lifted
+    assert not {"base_link", "fl_caster_l_wheel_link"} & lifted

@@ -212,3 +212,11 @@ def test_fingers_may_reach_into_what_they_hold_but_not_through_it(truth):
     block_m = body_of(block((0.12, 0.3, 0.3), (0, 0, 0)), 1.0, SETTLING.margin_m)
     truth.put("block", block_m, at)
     assert any(hit.endswith("/block") for hit in truth.hits(HIGH, "block", T))
+
+
+def test_the_base_rolls_over_what_is_low_and_no_higher(truth):
+    for top_m, is_hit in ((0.02, False), (0.1, True)):
+        plate = body_of(block((0.3, 0.3, top_m), (0, 0, 0)), 1.0, SETTLING.margin_m)
+        truth.put("plate", plate, rigid.from_yaw(0.0, (1.5, 1.5, top_m / 2)))
+        assert bool(truth.hits(stowed(1.5, 1.5))) is is_hit
+        truth.remove("plate")

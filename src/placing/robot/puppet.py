@@ -58,6 +58,13 @@ class Puppet:
         self._T_base_mass = self._mass_of_base()
         self._ignore_what_never_touches()
 
+    def is_lifted(self, link: int) -> bool:
+        """Return whether a link goes up and down with the torso, by its number."""
+        torso = self.joints[self.settings.torso]
+        while link not in (-1, torso):
+            link = self.parents[link]
+        return link == torso
+
     def names(self) -> dict[int, str]:
         """Return the name of each link by its number."""
         return {number: name for name, number in self.links.items()}
@@ -106,7 +113,9 @@ class Puppet:
     def _ignore_what_never_touches(self) -> None:
         """Leave out the pairs of links that the robot's maker says never collide."""
         pairs = {(child, parent) for child, parent in self.parents.items()}
-        if self.settings.srdf is not None:
+        if self.settings.srdf is None:
+            pairs |= self._overlapping()
+        else:
             for names in read_srdf(self.settings.srdf):
                 numbers = [self.links[name] for name in names if name in self.links]
                 pairs |= {tuple(numbers)} if len(numbers) == 2 else set()
@@ -114,6 +123,20 @@ class Puppet:
             pybullet.setCollisionFilterPair(
                 self.body, self.body, i, j, 0, physicsClientId=self.client
             )
+
+    def _overlapping(self) -> set[tuple[int, int]]:
+        """Return the pairs of links that overlap while the arm is stowed."""
+        # ASSUME: where the maker says nothing, these overlap by construction.
+        settings, pairs = self.settings, set()
+        stowed = np.array([0, 0, 0, settings.torso_heights_m[0], *settings.stow])
+        for opening_m in (0.0, settings.max_opening_m):
+            self.pose(stowed, opening_m)
+            pybullet.performCollisionDetection(physicsClientId=self.client)
+            found = pybullet.getContactPoints(
+                self.body, self.body, physicsClientId=self.client
+            )
+            pairs |= {(contact[3], contact[4]) for contact in found}
+        return pairs
 
 
 @contextmanager

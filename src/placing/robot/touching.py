@@ -51,22 +51,22 @@ def _faults_of_robot(stage: Stage, segment: Segment) -> Iterator[str]:
         for found in overlaps(stage.world, robot, pair):
             most = stage.config.touch_m
             if not is_self:
-                most = _allowed(stage, segment, link, body, found)
+                most = _allowed(stage, segment, number, body, found)
             if found.depth_m > most:
                 yield f"{link} in {other} by {found.depth_m * 1e3:.1f} mm"
 
 
 def _allowed(
-    stage: Stage, segment: Segment, link: str, body: int, found: Overlap
+    stage: Stage, segment: Segment, number: int, body: int, found: Overlap
 ) -> float:
     """Return how deep a link may be in what is not the robot [m]."""
-    config = stage.config
-    if body == stage.item and link in stage.puppet.settings.gripper_links:
+    config, puppet = stage.config, stage.puppet
+    if body == stage.item and puppet.names()[number] in puppet.settings.gripper_links:
         is_near = segment.is_holding or segment.name.endswith(AT_OBJECT)
         return config.finger_m if is_near else config.touch_m
-    is_low = found.at_m[2] < config.wheel_m
-    is_below = found.normal[2] > MAX_STEEPNESS and is_low
-    return config.wheel_m if is_below else config.touch_m
+    is_below = found.normal[2] > MAX_STEEPNESS and found.at_m[2] < config.wheel_m
+    is_rolling = is_below and not puppet.is_lifted(number)
+    return config.wheel_m if is_rolling else config.touch_m
 
 
 def _faults_of_item(stage: Stage, segment: Segment) -> Iterator[str]:

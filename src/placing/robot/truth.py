@@ -20,6 +20,7 @@ from placing.physics.bodies import Body, Piece
 from placing.physics.putting_down import put_down
 from placing.physics.settling import SettleConfig, settle
 from placing.physics.simulator import (
+    MAX_STEEPNESS,
     add_body,
     add_fixed,
     near_pairs,
@@ -60,6 +61,8 @@ class Truth:
         gripper = set(model.settings.gripper_links)
         self._gripper = gripper
         self._lever_m = levers(model)
+        frames = zip(model.links, model.tree.link_frame.tolist(), strict=True)
+        self._base = {link for link, frame in frames if frame == 0}
 
     def __enter__(self) -> "Truth":
         """Make the world."""
@@ -267,7 +270,9 @@ class Truth:
             is_held = not is_self and thing == held_id and link in self._gripper
             depth_m = self._config.finger_m if is_held else 0.0
             hit = "/".join(sorted((link, thing)) if is_self else (link, thing))
-            if hit not in found and self._is_overlap(self._robot, pair, depth_m):
+            # The base rolls over what is low.
+            low_m = self._config.floor_m if link in self._base else -np.inf
+            if hit not in found and self._is_overlap(self._robot, pair, depth_m, low_m):
                 found.add(hit)
         return found
 
@@ -280,9 +285,18 @@ class Truth:
             if pair[1] != self._robot and self._is_overlap(i, pair, depth_m)
         }
 
-    def _is_overlap(self, i: int, pair: tuple[int, int, int], depth_m: float) -> bool:
-        """Return whether a body overlaps with one near it by at least `depth_m`."""
-        return any(o.depth_m >= depth_m for o in overlaps(self._world, i, pair))
+    def _is_overlap(
+        self, i: int, pair: tuple[int, int, int], depth_m: float, low_m: float = -np.inf
+    ) -> bool:
+        """Return whether a body overlaps with one near it by at least `depth_m`.
+
+        What it stands on does not count where that is lower than `low_m`.
+        """
+        return any(
+            o.depth_m >= depth_m
+            and not (o.normal[2] > MAX_STEEPNESS and o.at_m[2] < low_m)
+            for o in overlaps(self._world, i, pair)
+        )
 
 
 @contextmanager
