@@ -20,7 +20,7 @@ from scipy.ndimage import map_coordinates
 
 from placing import rigid
 from placing.robot.checker import SceneChecker, held, levers
-from placing.robot.distance_field import distance_field
+from placing.robot.distance_field import distance_field, open_field
 from placing.robot.kernels import forward, n_steps
 from placing.robot.model import tool_pose
 from placing.robot.truth import Truth, steps
@@ -275,3 +275,18 @@ def test_steps_of_an_edge_are_as_short_as_they_say_also_for_what_is_held():
         away = np.linalg.norm(np.diff(centres, axis=0), axis=2).max()
         longest = max(longest, away / CONFIG.step_m)
     assert 0.7 < longest <= 1.02
+
+
+def test_a_path_is_clear_of_boxes_where_each_of_its_configurations_is():
+    boxless, tree = SceneChecker(pr2(), open_field(), CONFIG), pr2().tree
+    rng, found = np.random.default_rng(11), []
+    for seed in range(60):
+        box = np.array([*rng.uniform((0, 0, 0.3), (4, 3, 1.2)), 0.2, 0.3, 0.25, 0.4])
+        path = anywhere(seed, 3)
+        path[1:, 3:] = path[0, 3:] + rng.uniform(-0.5, 0.5, (2, 8)) * [0, *[1] * 7]
+        among = boxless.with_boxes(box[None])
+        rows = steps(path, tree, pr2().spheres, levers(pr2()), CONFIG.step_m)
+        is_hit = any(among.hits(q).boxes for _, q in rows)
+        found.append(among.is_path_clear(path))
+        assert found[-1] is not is_hit
+    assert 10 < sum(found) < 50

@@ -27,6 +27,7 @@ from placing.robot.kernels import (
     hand_boxes,
     hands_clear,
     hands_free,
+    path_clear,
     state_hits,
     way,
 )
@@ -202,6 +203,17 @@ class SceneChecker:
             return False
         edges = pairwise(np.asarray(path))
         return all(self.is_edge_free(q0, q1, held, touching) for q0, q1 in edges)
+
+    def is_path_clear(
+        self, path: Array, held: Held | None = None, touching: bool = False
+    ) -> bool:
+        """Return whether a path (t, 4 + a) is free of the boxes, whatever else it hits.
+
+        Configurations are those that `is_path_free` looks at.
+        """
+        rows = np.ascontiguousarray(path, float)
+        args = self.model.tree, self._body(held), self._around
+        return bool(path_clear(*args, rows, touching, self.config.step_m))
 
     def hits(self, q: Array, held: Held | None = None, touching: bool = False) -> Hits:
         """Return all that a configuration (4 + a,) hits."""

@@ -21,6 +21,8 @@ from placing.robot.model import RobotModel
 Mask = NDArray[np.bool_]
 N_TOGETHER = 16
 """Base poses tried together at first; each time twice as many as before."""
+MOST_KEPT = 512
+"""Places of the hand that are remembered; only speed and memory depend on it."""
 MIN_FACING = -0.3
 """Least cosine between where the fingers point and where the robot looks."""
 
@@ -50,7 +52,10 @@ class Hands:
         They are the same whenever the same tool (7,) and `held`, which has to be kept,
         are asked for again. They may touch, as when something is put down.
         """
-        found = self._found.setdefault((T_world_tool.tobytes(), id(held)), [])
+        key = T_world_tool.tobytes(), id(held)
+        found = self._found[key] = self._found.pop(key, [])  # the last of all
+        if len(self._found) > MOST_KEPT:
+            del self._found[next(iter(self._found))]
         first, size = 0, N_TOGETHER
         for i in count():
             if first >= len(bases):

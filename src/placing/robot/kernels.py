@@ -227,6 +227,40 @@ def edge_free(tree, body, around, q0, q1, touching, step_m):
 
 
 @njit(cache=True)
+def path_clear(tree, body, around, path, touching, step_m):
+    """Return whether a path (t, 4 + a) is free of the boxes, whatever else it hits."""
+    frames = np.empty((len(tree.axis), 3, 4))
+    centres = np.empty((len(body.frame), 3))
+    q, n_boxes = np.empty(path.shape[1]), len(around.boxes)
+    for row in range(len(path)):
+        q0, q1 = path[max(row - 1, 0)], path[row]
+        if not _are_boxes_near(body, around, q0, q1):
+            continue
+        n = n_steps(tree, body.sphere_frame, body.at_m, body.lever_m, q0, q1, step_m)
+        for i in range(n + 1):
+            _blend(q0, q1, i / n, q)
+            forward(tree, q, frames)
+            _place_links(body, frames, centres)
+            if _first_box(body, around, frames, centres, touching, 0, 0) < n_boxes:
+                return False
+    return True
+
+
+@njit(cache=True)
+def _are_boxes_near(body, around, q0, q1):
+    """Return whether the robot might reach a box on the base's way between two rows."""
+    boxes, wx, wy = around.boxes, q1[0] - q0[0], q1[1] - q0[1]
+    square = max(wx * wx + wy * wy, 1e-12)
+    for b in range(len(boxes)):
+        x, y = boxes[b, 0] - q0[0], boxes[b, 1] - q0[1]
+        share = min(max((x * wx + y * wy) / square, 0.0), 1.0)
+        away = np.hypot(x - share * wx, y - share * wy)
+        if away < body.span_m + boxes[b, 8] + around.box_margin_m:
+            return True
+    return False
+
+
+@njit(cache=True)
 def n_steps(tree, frame, at_m, lever_m, q0, q1, step_m):
     """Return in how many steps of an edge no point moves farther than `step_m`.
 

@@ -8,8 +8,6 @@ is where something does.
 import numpy as np
 
 from placing.rigid import Array
-from placing.robot.checker import SceneChecker
-from placing.robot.distance_field import open_field
 from placing.robot.errands import Errand
 from placing.robot.exact import LINES, Exact
 from placing.robot.planning import FALLS, REJECTED, Motion, Refusal
@@ -26,8 +24,6 @@ class Placer:
         self._refused: dict[tuple, Refusal] = {}
         self._carried_out: dict[tuple, Motion | Refusal] = {}
         self._clear: dict[tuple[int, bytes], bool] = {}
-        checker = seeker.checker
-        self._open = SceneChecker(checker.model, open_field(), checker.config)
 
     def planned(self, errand: Errand) -> Motion | Refusal:
         """Return a motion that is free among the points of the scan, or why none is.
@@ -92,9 +88,9 @@ class Placer:
         key = id(motion), box.tobytes()
         if key not in self._clear:
             _, held = self.seeker.grasps(errand.item)[motion.grasp]
-            checker = self._open.with_boxes(box[None])
+            checker = self.seeker.checker.with_boxes(box[None])
             self._clear[key] = all(
-                checker.is_path_free(
+                checker.is_path_clear(
                     segment.path,
                     held if segment.is_holding else None,
                     touching=segment.name in LINES,

@@ -11,7 +11,7 @@ from placing.robot.checker import Held, SceneChecker
 from placing.robot.grasps import Grasp
 from placing.robot.hands import Hands, Mask
 from placing.robot.paths import Query
-from placing.robot.planning import REASONS, TOO_WIDE
+from placing.robot.planning import NO_PLACE, REASONS
 
 
 @dataclass
@@ -38,7 +38,7 @@ class Search:
     query: Query
     n_paths: int
     """Paths that may still be sought."""
-    reason: str = TOO_WIDE
+    reason: str = NO_PLACE
     n_free: int = 0
     """Goals found free."""
     blocked: list[frozenset[int]] = field(default_factory=list)

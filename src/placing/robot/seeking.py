@@ -23,7 +23,7 @@ from placing.robot.hands import Hands, Mask
 from placing.robot.held_shapes import carried, cells_of
 from placing.robot.motions import segments_of
 from placing.robot.paths import Query
-from placing.robot.planning import FALLS, NO_PLACE, Motion, PlanningConfig, Refusal
+from placing.robot.planning import FALLS, TOO_WIDE, Motion, PlanningConfig, Refusal
 from placing.robot.reach import standing_places
 from placing.robot.search import Search
 from placing.scene import SceneObject, standing_at
@@ -81,11 +81,13 @@ class Seeker:
         Raises `BadInput` where the robot cannot stand at its start.
         """
         self._check_start(errand.start)
-        search = self._search(errand)
-        if search.grasps:
-            search.reached(NO_PLACE)
-            can_stand = search.stands.any()
-            motion = self._accepted(search, complaint) if can_stand else None
+        grasps = self.grasps(errand.item)
+        some = [grasps[name] for name in grasps if errand.grasp in ("", name)]
+        if not some:
+            return Refusal(TOO_WIDE, ())
+        search = self._search(errand, some)
+        if search.stands.any():
+            motion = self._accepted(search, complaint)
             if motion is not None:
                 return motion
         blamed = to_blame(search, errand.boxes, self.config.blame_m)
@@ -125,9 +127,9 @@ class Seeker:
         """Return the checker with boxes, and that of an object where it stands."""
         return self.among({**boxes, OWN: standing_at(item, T_world_object)})
 
-    def _search(self, errand: Errand) -> Search:
+    def _search(self, errand: Errand, grasps: list[tuple[Grasp, Held]]) -> Search:
         """Return a search that has not begun, with the object where it touches."""
-        item, grasps = errand.item, self.grasps(errand.item)
+        item = errand.item
         bases, stands = self._standing_places(errand)
         T_world_object = errand.T_world_object
         if errand.is_putting and stands.any():
@@ -137,7 +139,7 @@ class Seeker:
             T_world_object,
             bases,
             stands,
-            [grasps[name] for name in grasps if errand.grasp in ("", name)],
+            grasps,
             self.among(errand.boxes),
             self.among_all(errand.boxes, item, T_world_object),
             self.checker,
