@@ -21,7 +21,7 @@ from placing.robot.model import RobotModel
 Mask = NDArray[np.bool_]
 N_TOGETHER = 16
 """Base poses tried together at first; each time twice as many as before."""
-MOST_KEPT = 512
+MOST_KEPT = 96
 """Places of the hand that are remembered; only speed and memory depend on it."""
 MIN_FACING = -0.3
 """Least cosine between where the fingers point and where the robot looks."""
