@@ -98,3 +98,16 @@ def test_ways_with_an_object_are_as_short_as_those_of_an_exhaustive_search():
             assert np.isclose(length, shortest[goal])
             n_found += 1
     assert 5 < n_found < 40
+
+
+def test_what_has_no_way_is_known_for_all_that_is_joined_to_it():
+    place = floor()
+    fence = checker().with_boxes([(1.5, 1.5, 0.5, 0.05, 3.4, 1.0, 0.0)])
+    goals = place.configurations(place.poses[place.reachable[::61]])
+    start, *goals = goals[fence.are_free(goals)]
+    is_lost = np.zeros(len(place.poses), np.bool_)
+    found = [place.path(q, fence, None, start, is_lost) is None for q in goals]
+    assert found == [place.path(q, fence, None, start) is None for q in goals]
+    assert found == [(q[0] > 1.5) is not (start[0] > 1.5) for q in goals]
+    assert 3 < sum(found) < len(found) - 3
+    assert is_lost.sum() > 100

@@ -154,3 +154,15 @@ def test_a_box_around_an_object_holds_its_corners():
     box = standing_at(CAN, PLACE)
     assert np.allclose(box[:3], PLACE[4:])
     assert np.allclose(box[3:6], CAN.size_m)
+
+
+def test_the_exact_check_holds_the_fingers_as_the_motion_does(monkeypatch):
+    exact, held = placer().exact, []
+    hold = exact.truth.open_fingers
+    monkeypatch.setattr(
+        exact.truth, "open_fingers", lambda m: (held.append(m), hold(m))
+    )
+    exact.stand({})
+    assert exact.complaint(put(), CAN) == ""
+    assert set(held) == {s.opening_m for s in put().segments}
+    assert len(set(held)) == 2
