@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from placing import rigid
 from placing.rigid import Array
 from placing.robot.checker import Held, SceneChecker
+from placing.robot.distance_field import Mask
 from placing.robot.inverse import solutions_at
 from placing.robot.model import RobotModel
 
-Mask = NDArray[np.bool_]
 N_TOGETHER = 16
 """Base poses tried together at first; each time twice as many as before."""
 MOST_KEPT = 96

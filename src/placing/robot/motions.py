@@ -47,7 +47,7 @@ def _arrive(
 ) -> tuple[Array, Array, Array] | None:
     """Return the ways of the base, of the torso and of the arm to `end`, if any."""
     drive = goal.stance.drive
-    raised = np.concatenate([end[:4], goal.stance.arm])
+    raised = np.concatenate([end[:4], drive[-1, 4:]])
     reach = _connected(search, checker, raised, end, held)
     if reach is None:
         return None

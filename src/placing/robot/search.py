@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 
 from placing.rigid import Array
 from placing.robot.checker import Held, SceneChecker
+from placing.robot.distance_field import Mask
 from placing.robot.grasps import Grasp
-from placing.robot.hands import Hands, Mask
+from placing.robot.hands import Hands
 from placing.robot.paths import Query
 from placing.robot.planning import NO_PLACE, REASONS
 
@@ -30,8 +31,6 @@ class Search:
     """Knows what stands there but the object."""
     among: SceneChecker
     """Knows the object as well."""
-    alone: SceneChecker
-    """Knows only what always stands there."""
     hands: Hands
     start: Array | None
     """Where the robot waits, by default where the floor is most open."""
@@ -43,6 +42,11 @@ class Search:
     """Goals found free."""
     blocked: list[frozenset[int]] = field(default_factory=list)
     """Numbers of the boxes that each goal hits which is free without them."""
+
+    @property
+    def alone(self) -> SceneChecker:
+        """Knows only what always stands there."""
+        return self.hands.alone
 
     def reached(self, reason: str) -> None:
         """Remember the reason if the search came as far as that."""

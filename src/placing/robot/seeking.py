@@ -14,12 +14,13 @@ from placing.rigid import Array
 from placing.robot.blame import to_blame
 from placing.robot.carrying import Carrying
 from placing.robot.checker import Held, SceneChecker
+from placing.robot.distance_field import Mask
 from placing.robot.driving import Floor
 from placing.robot.errands import Boxes, Errand
 from placing.robot.exact import Exact
 from placing.robot.goals import goals_of
 from placing.robot.grasps import Grasp, GraspSheet, grasps_of
-from placing.robot.hands import Hands, Mask
+from placing.robot.hands import Hands
 from placing.robot.held_shapes import carried, cells_of
 from placing.robot.motions import segments_of
 from placing.robot.paths import Query
@@ -142,7 +143,6 @@ class Seeker:
             grasps,
             self.among(errand.boxes),
             self.among_all(errand.boxes, item, T_world_object),
-            self.checker,
             self._hands,
             errand.start,
             self.query(item, errand.T_world_object),

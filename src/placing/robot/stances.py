@@ -10,8 +10,8 @@ import numpy as np
 from placing.rigid import Array
 from placing.robot.carrying import Carrying
 from placing.robot.checker import Held, SceneChecker
+from placing.robot.distance_field import Mask
 from placing.robot.driving import Floor
-from placing.robot.hands import Mask
 from placing.robot.search import Search
 
 
@@ -21,9 +21,7 @@ class Stance(NamedTuple):
     carry: Array
     """(a,) arm that carries the object to the base pose, or from it."""
     drive: Array
-    """(t, 4 + a) way of the base, arm as it comes."""
-    arm: Array
-    """(a,) as it comes: that of `carry` when putting, folded when picking up."""
+    """(t, 4 + a) way of the base, arm as in `carry` when putting, else folded."""
 
 
 class Stances:
@@ -58,10 +56,10 @@ class Stances:
         if carry is None:
             return None
         if self.search.is_putting:
-            arm, drive = carry, self._drive(checker, q, carry, held)
+            drive = self._drive(checker, q, carry, held)
         else:
-            arm, drive = self._stow, self._drive(self.search.among, q, self._stow, None)
-        return None if drive is None else Stance(carry, drive, arm)
+            drive = self._drive(self.search.among, q, self._stow, None)
+        return None if drive is None else Stance(carry, drive)
 
     def _rises(
         self, checker: SceneChecker, q: Array, arm: Array, held: Held | None
@@ -79,8 +77,8 @@ class Stances:
             floor, start = self.floor, self.search.start
             start = floor.start if start is None else start.copy()
             start[4:] = arm
-            nowhere = np.zeros(len(floor.poses), np.bool_)
-            is_lost = self._is_lost.setdefault(carrying, nowhere)
-            drive = floor.path(q, checker, held, start, is_lost)
+            if carrying not in self._is_lost:
+                self._is_lost[carrying] = np.zeros(len(floor.poses), np.bool_)
+            drive = floor.path(q, checker, held, start, self._is_lost[carrying])
             self._drives[carrying, place] = drive
         return self._drives[carrying, place]

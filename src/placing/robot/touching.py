@@ -51,17 +51,21 @@ def _faults_of_robot(stage: Stage, segment: Segment) -> Iterator[str]:
         for found in overlaps(stage.world, robot, pair):
             most = stage.config.touch_m
             if not is_self:
-                most = _allowed(stage, segment, number, body, found)
+                most = _allowed(stage, segment, pair, link, found)
             if found.depth_m > most:
                 yield f"{link} in {other} by {found.depth_m * 1e3:.1f} mm"
 
 
 def _allowed(
-    stage: Stage, segment: Segment, number: int, body: int, found: Overlap
+    stage: Stage,
+    segment: Segment,
+    pair: tuple[int, int, int],
+    link: str,
+    found: Overlap,
 ) -> float:
     """Return how deep a link may be in what is not the robot [m]."""
-    config, puppet = stage.config, stage.puppet
-    if body == stage.item and puppet.names()[number] in puppet.settings.gripper_links:
+    (number, body, _), config, puppet = pair, stage.config, stage.puppet
+    if body == stage.item and link in puppet.settings.gripper_links:
         is_near = segment.is_holding or segment.name.endswith(AT_OBJECT)
         return config.finger_m if is_near else config.touch_m
     is_below = found.normal[2] > MAX_STEEPNESS and found.at_m[2] < config.wheel_m

@@ -99,16 +99,20 @@ class Truth:
     def _hold_still(self) -> None:
         """Set the joints that no configuration moves, and find those that it moves."""
         settings = self._model.settings
-        values = fixed_values(settings, self._model.description, settings.max_opening_m)
-        for name, value in values.items():
-            pybullet.resetJointState(
-                self._robot, self._joints[name], value, physicsClientId=self._client
-            )
+        widest_m = settings.max_opening_m
+        self._hold(fixed_values(settings, self._model.description, widest_m))
         names = (settings.torso, *settings.chain)
         self._moving = [self._joints[name] for name in names]
         inertial = pybullet.getDynamicsInfo(self._robot, -1, self._client)[3:5]
         position, (x, y, z, w) = inertial
         self._T_base_mass = np.array([w, x, y, z, *position])
+
+    def _hold(self, values: Mapping[str, float]) -> None:
+        """Set joints that no configuration moves, by name."""
+        for name, value in values.items():
+            pybullet.resetJointState(
+                self._robot, self._joints[name], value, physicsClientId=self._client
+            )
 
     def _allow(self) -> None:
         """Let links overlap that do so by design or never move against each other."""
@@ -147,10 +151,7 @@ class Truth:
 
     def open_fingers(self, opening_m: float) -> None:
         """Hold the fingers so far apart from now on; they are longer when shut."""
-        for name, value in gripper_values(self._model.settings, opening_m).items():
-            pybullet.resetJointState(
-                self._robot, self._joints[name], value, physicsClientId=self._client
-            )
+        self._hold(gripper_values(self._model.settings, opening_m))
 
     def hits(
         self,
