@@ -20,6 +20,11 @@ NOTHING = "Nothing to be done (all requested files are present and up to date)."
 # Recordings hold random identifiers, pictures of text depend on nothing checked here,
 # and times differ in every run.
 NOT_COMPARED = {"recordings", "logs", "benchmarks", "run.json"}
+SHARED = {
+    "PYTHONPATH": str(ROOT / "src"),
+    "NUMBA_CACHE_DIR": str(ROOT / ".cache" / "numba"),
+}
+"""A copy of the library would be compiled anew, which takes minutes."""
 STUDY_S = 1500
 """A study that hangs is given up; on two busy cores it takes ten minutes."""
 
@@ -38,16 +43,12 @@ def copy_project(folder):
 
 
 def start(folder, *words, configs=("small.yaml",), **kwargs):
-    """Start Snakemake in a project."""
+    """Start Snakemake in a project, whose library is compiled once for all tests."""
     command = [sys.executable, "-m", "snakemake", *words, "--configfile", *configs]
-    environment = os.environ | {
-        "PYTHONPATH": str(folder / "src"),
-        "NUMBA_CACHE_DIR": str(ROOT / ".cache" / "numba"),
-    }
     return subprocess.Popen(
         command,
         cwd=folder,
-        env=environment,
+        env=os.environ | SHARED,
         text=True,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
@@ -241,12 +242,9 @@ def test_commands_run_outside_snakemake_give_the_same_bytes(finished):
     folder = finished / "results" / "rooms" / "scenes" / "fold0"
     before = {path.name: path.read_bytes() for path in folder.glob("*.json")}
     again = command.replace(target, "again")
-    environment = os.environ | {
-        "PYTHONPATH": str(finished / "src"),
-        "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",
-        "NUMBA_CPU_NAME": "generic",
-        "NUMBA_CACHE_DIR": str(ROOT / ".cache" / "numba"),
-    }
+    environment = os.environ | SHARED
+    environment["PATH"] = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+    environment["NUMBA_CPU_NAME"] = "generic"
     subprocess.run(again, shell=True, cwd=finished, env=environment, check=True)
     after = {
         path.name: path.read_bytes() for path in (finished / "again").glob("*.json")
