@@ -155,13 +155,17 @@ def test_a_line_out_of_reach_is_not_followed():
 
 
 @pytest.mark.parametrize("n", [1, 2, 40])
-def test_many_poses_together_have_the_solutions_that_each_has(n):
-    robot, some = model("pr2"), reachable(np.random.default_rng(7), "pr2", n)
-    Ts = np.array([rigid.homogeneous(T) for _, T in some])
-    which, arms = solutions_at(robot, Ts, np.array([q[3] for q, _ in some]))
-    for i, (q, T) in enumerate(some):
-        alone = arm_solutions(robot, T, q[3])
-        together = arms[which == i]
+def test_many_places_together_have_the_solutions_that_each_has(n):
+    robot, rng = model("pr2"), np.random.default_rng(7)
+    q, T_world_tool = reachable(rng, "pr2", 1)[0]
+    low, high = robot.settings.torso_range_m
+    places = rng.normal(scale=[0.03, 0.03, 0.1, 0], size=(n, 4))
+    places[:, 3] = np.clip(q[3] + rng.normal(scale=0.02, size=n), low, high)
+    which, arms = solutions_at(robot, places, rigid.homogeneous(T_world_tool))
+    for i, (x, y, yaw, height_m) in enumerate(places):
+        T_world_base = rigid.from_yaw(yaw, (x, y, 0.0))
+        T = rigid.compose(rigid.inverse(T_world_base), T_world_tool)
+        alone, together = arm_solutions(robot, T, height_m), arms[which == i]
         assert len(together) == len(alone) or len(together) == 0
         assert np.allclose(together, alone[: len(together)], atol=1e-9)
-    assert len(np.unique(which)) >= 0.9 * n
+    assert len(np.unique(which)) >= 0.8 * n

@@ -10,6 +10,7 @@ from itertools import count
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from placing import rigid
@@ -86,34 +87,44 @@ def hands_at(
     are left out in which the hand, or what it holds, hits what base and torso carry.
     """
     model = checker.model
-    pointing = rigid.matrix(T_world_tool[:4])[:2, 0]
-    towards = T_world_tool[4:6] - bases[:, :2]
-    # The fingers do not point back at the robot.
-    facing = towards @ pointing >= MIN_FACING * np.linalg.norm(towards, axis=1)
-    heights = np.asarray(model.settings.torso_heights_m)
-    number = np.repeat(np.flatnonzero(facing), len(heights))
-    places = np.column_stack([bases[number], np.tile(heights, int(facing.sum()))])
-    is_clear = checker.are_hands_clear(places, rigid.homogeneous(T_world_tool), held)
+    T = rigid.homogeneous(T_world_tool)
+    number, places = _facing(bases, np.array(model.settings.torso_heights_m), T)
+    is_clear = checker.are_hands_clear(places, T, held)
     number, places = number[is_clear], places[is_clear]  # (n,), (n, 4)
-    seen = _seen_from(places[:, :3], T_world_tool)
-    which, arms = solutions_at(model, seen, places[:, 3])
-    rows = np.hstack([places[which], _near_to(arms, model.settings.carry, model)])
+    which, arms = solutions_at(model, places, T)
+    rows = np.empty((len(which), 4 + model.n_arm))
+    rows[:, :4], rows[:, 4:] = places[which], _near_to(arms, model)
     return number[which], rows
 
 
-def _seen_from(poses: Array, T_world_tool: Array) -> Array:
-    """Return the tool in the frames of base poses (n, 3), shape (n, 4, 4)."""
-    c, s = np.cos(poses[:, 2]), np.sin(poses[:, 2])
-    back = np.tile(np.eye(4), (len(poses), 1, 1))  # T_base_world
-    back[:, 0, 0], back[:, 0, 1], back[:, 1, 0], back[:, 1, 1] = c, s, -s, c
-    back[:, :2, 3] = -np.einsum("nij,nj->ni", back[:, :2, :2], poses[:, :2])
-    return back @ rigid.homogeneous(T_world_tool)
+@njit(cache=True)
+def _facing(
+    bases: Array, heights_m: Array, T_world_tool: Array
+) -> tuple[NDArray[np.int64], Array]:
+    """Return numbers of the bases that the fingers do not point back at (n,).
+
+    And these bases at all heights of the torso (n, 4), with each as often.
+    """
+    number = np.empty(len(bases) * len(heights_m), np.int64)
+    places = np.empty((len(number), 4))
+    n, (px, py) = 0, (T_world_tool[0, 0], T_world_tool[1, 0])
+    for i in range(len(bases)):
+        x, y = T_world_tool[0, 3] - bases[i, 0], T_world_tool[1, 3] - bases[i, 1]
+        if x * px + y * py < MIN_FACING * np.hypot(x, y):
+            continue
+        for height_m in heights_m:
+            number[n] = i
+            places[n, :3], places[n, 3] = bases[i], height_m
+            n += 1
+    return number[:n], places[:n]
 
 
-def _near_to(arms: Array, other: tuple[float, ...], model: RobotModel) -> Array:
-    """Return solutions (k, a) with endless joints turned to less than half a turn."""
-    endless = ~np.isfinite(model.upper[4:])
-    return np.where(endless, rigid.near(arms, np.asarray(other)), arms)
+def _near_to(arms: Array, model: RobotModel) -> Array:
+    """Return solutions (k, a), endless joints turned to near those of carrying."""
+    endless = np.flatnonzero(~np.isfinite(model.upper[4:]))
+    other = np.asarray(model.settings.carry)[endless]
+    arms[:, endless] = rigid.near(arms[:, endless], other)
+    return arms
 
 
 def best_first(rows: Array, carry: tuple[float, ...]) -> Array:

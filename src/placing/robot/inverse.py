@@ -5,6 +5,7 @@ inverse of `numerical` for all others; both try a fixed number of times, in orde
 """
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from placing import rigid
@@ -37,15 +38,17 @@ def arm_solutions(model: RobotModel, T_base_tool: Array, torso_m: float) -> Arra
 
 
 def solutions_at(
-    model: RobotModel, Ts_base_tool: Array, torso_m: Array
+    model: RobotModel, places: Array, T_world_tool: Array
 ) -> tuple[NDArray[np.int64], Array]:
-    """Return the solutions at many poses (n, 4, 4) and heights of the torso (n,).
+    """Return the solutions for a tool (4, 4) from many places.
 
-    They are whose each solution is (k,), and the solutions (k, a) as `arm_solutions`
-    returns them, without its second, finer try.
+    Places are x, y, yaw of the base and a height of the torso, (n, 4). Returned are
+    whose each solution is (k,), and the solutions (k, a) as `arm_solutions` returns
+    them, without its second, finer try.
     """
-    n, lift = model.settings.n_tries, _lift(model, np.asarray(torso_m))
-    Ts = (np.linalg.inv(lift) @ Ts_base_tool @ model.T_tool_frame)[:, :3]
+    n, tree = model.settings.n_tries, model.tree
+    T_world_wrist = np.ascontiguousarray((T_world_tool @ model.T_tool_frame)[:3])
+    Ts = _seen_from(places, T_world_wrist, tree.T_parent_joint[1], tree.axis[1])
     if model.arm is None:
         found = [numerical.solutions(model, T, n) for T in Ts]
         which = np.repeat(np.arange(len(found)), [len(arms) for arms in found])
@@ -53,9 +56,36 @@ def solutions_at(
     pans = _pans(model.arm, n)
     out = np.empty((MOST_SOLUTIONS * len(Ts) + pr2_arm.N_MOST * len(pans), 7))
     which = np.empty(len(out), np.int64)
-    args = np.ascontiguousarray(Ts), pans, out, which
-    k = pr2_arm.solve_many(model.arm, *args)
+    k = pr2_arm.solve_many(model.arm, Ts, pans, out, which)
     return which[:k].copy(), out[:k].copy()
+
+
+@njit(cache=True)
+def _seen_from(
+    places: Array, T_world_wrist: Array, T_base_joint: Array, axis: Array
+) -> Array:
+    """Return a frame (3, 4) in the frame of the torso at places, (n, 3, 4)."""
+    seen = np.empty((len(places), 3, 4))
+    for i in range(len(places)):
+        c, s = np.cos(places[i, 2]), np.sin(places[i, 2])
+        for k in range(4):
+            x, y, z = T_world_wrist[0, k], T_world_wrist[1, k], T_world_wrist[2, k]
+            if k == 3:
+                x, y = x - places[i, 0], y - places[i, 1]
+            x, y = c * x + s * y, c * y - s * x
+            if k == 3:
+                x -= T_base_joint[0, 3]
+                y -= T_base_joint[1, 3]
+                z -= T_base_joint[2, 3]
+            for r in range(3):
+                seen[i, r, k] = (
+                    T_base_joint[0, r] * x
+                    + T_base_joint[1, r] * y
+                    + T_base_joint[2, r] * z
+                )
+        for r in range(3):
+            seen[i, r, 3] -= places[i, 3] * axis[r]
+    return seen
 
 
 def follow(model: RobotModel, q: Array, Ts_world_tool: Array) -> Array:
