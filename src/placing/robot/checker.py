@@ -20,9 +20,11 @@ from placing.rigid import Array
 from placing.robot.distance_field import DistanceField, FieldConfig
 from placing.robot.kernels import (
     Body,
+    Case,
     Lattice,
     Surroundings,
     are_free,
+    case_of,
     edge_free,
     hand_boxes,
     hands_clear,
@@ -114,7 +116,7 @@ class SceneChecker:
 
     def __post_init__(self) -> None:
         """Prepare what every check needs."""
-        vars(self).update(_counter=np.zeros(1, np.int64), _bodies={})
+        vars(self).update(_counter=np.zeros(1, np.int64), _bodies={}, _cases={})
 
     @property
     def n_checks(self) -> int:
@@ -134,7 +136,7 @@ class SceneChecker:
         """Return whether each configuration (t, 4 + a) is free, (t,)."""
         rows = np.ascontiguousarray(configurations, float)
         out = np.empty(len(rows), np.bool_)
-        are_free(self.model.tree, self._body(held), self._around, rows, touching, out)
+        are_free(self._case(held), rows, touching, out)
         self._count(len(rows))
         return out
 
@@ -147,7 +149,7 @@ class SceneChecker:
         """
         wrists = self._wrists(Ts_world_tool)
         out = np.empty(len(wrists), np.bool_)
-        hands_free(self._body(held), self._around, wrists, touching, out)
+        hands_free(self._case(held), wrists, touching, out)
         return out
 
     def are_hands_clear(
@@ -160,8 +162,8 @@ class SceneChecker:
         """
         wrist = self._wrists(T_world_tool[None])[0]
         out = np.empty(len(places), np.bool_)
-        args = self.model.tree, self._body(held), self._around
-        hands_clear(*args, np.ascontiguousarray(places, float), wrist, out)
+        rows = np.ascontiguousarray(places, float)
+        hands_clear(self._case(held), rows, wrist, out)
         return out
 
     def hand_hits(
@@ -170,7 +172,7 @@ class SceneChecker:
         """Return numbers of the boxes that the hand alone hits, tool at (4, 4)."""
         boxes = np.zeros(len(self.boxes), np.bool_)
         wrist = self._wrists(T_world_tool[None])[0]
-        hand_boxes(self._body(held), self._around, wrist, touching, boxes)
+        hand_boxes(self._case(held), wrist, touching, boxes)
         return tuple(np.flatnonzero(boxes).tolist())
 
     def is_free(
@@ -184,9 +186,7 @@ class SceneChecker:
     ) -> bool:
         """Return whether the straight line between two configurations is free."""
         free, n = edge_free(
-            self.model.tree,
-            self._body(held),
-            self._around,
+            self._case(held),
             np.ascontiguousarray(q0, float),
             np.ascontiguousarray(q1, float),
             touching,
@@ -212,15 +212,13 @@ class SceneChecker:
         Configurations are those that `is_path_free` looks at.
         """
         rows = np.ascontiguousarray(path, float)
-        args = self.model.tree, self._body(held), self._around
-        return bool(path_clear(*args, rows, touching, self.config.step_m))
+        return bool(path_clear(self._case(held), rows, touching, self.config.step_m))
 
     def hits(self, q: Array, held: Held | None = None, touching: bool = False) -> Hits:
         """Return all that a configuration (4 + a,) hits."""
         boxes = np.zeros(len(self.boxes), np.bool_)
-        args = self.model.tree, self._body(held), self._around
         row = np.ascontiguousarray(q, float)
-        scene, itself = state_hits(*args, row, touching, boxes)
+        scene, itself = state_hits(self._case(held), row, touching, boxes)
         self._count(1)
         return Hits(bool(scene), bool(itself), tuple(np.flatnonzero(boxes).tolist()))
 
@@ -240,8 +238,8 @@ class SceneChecker:
         """
         if is_lost is None:
             is_lost = np.zeros(len(lattice.poses), np.bool_)
-        args = self.model.tree, self._body(held), self._around
-        return way(*args, np.asarray(q, float), lattice, goal, root, is_lost)
+        row = np.asarray(q, float)
+        return way(self._case(held), row, lattice, goal, root, is_lost)
 
     def _wrists(self, Ts_world_tool: Array) -> Array:
         """Return the last frame of the arm with the tool at (n, 4, 4), (n, 3, 4)."""
@@ -250,6 +248,14 @@ class SceneChecker:
     def _count(self, n: int) -> None:
         """Add to the number of checks."""
         vars(self)["_counter"][0] += n
+
+    def _case(self, held: Held | None) -> Case:
+        """Return what the kernels look at, made once for what is held."""
+        cases, key = vars(self)["_cases"], id(held)
+        if key not in cases:
+            # What is held is kept with its body.
+            cases[key] = case_of(self.model.tree, self._body(held), self._around)
+        return cases[key]
 
     def _body(self, held: Held | None) -> Body:
         """Return the spheres of the robot and of what it holds, made once for each."""

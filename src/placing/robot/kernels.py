@@ -12,7 +12,8 @@ from heapq import heappop, heappush
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
+from numba import njit, types
+from numba.experimental import structref
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -183,9 +184,31 @@ class Surroundings(NamedTuple):
     """Height of the part of what is held that may touch when putting down."""
 
 
+@structref.register
+class _CaseType(types.StructRef):
+    """What the compiler knows of a case."""
+
+
+class Case(structref.StructRefProxy):
+    """A robot, what it holds and what it may hit, to be handed over as one.
+
+    Handing over each of their arrays takes longer than a check.
+    """
+
+
+structref.define_proxy(Case, _CaseType, ["tree", "body", "around"])
+
+
 @njit(cache=True)
-def are_free(tree, body, around, configurations, touching, out):
+def case_of(tree, body, around):
+    """Return a tree, a body and surroundings as one."""
+    return Case(tree, body, around)
+
+
+@njit(cache=True)
+def are_free(case, configurations, touching, out):
     """Write whether each configuration (t, 4 + a) is free into `out` (t,)."""
+    tree, body, around = case.tree, case.body, case.around
     frames = np.empty((len(tree.axis), 3, 4))
     centres = np.empty((len(body.frame), 3))
     known = -1  # a row that is free, and so is what moves with the same joints
@@ -201,8 +224,9 @@ def are_free(tree, body, around, configurations, touching, out):
 
 
 @njit(cache=True)
-def edge_free(tree, body, around, q0, q1, touching, step_m):
+def edge_free(case, q0, q1, touching, step_m):
     """Return whether a straight line of configurations is free, and the checks made."""
+    tree, body, around = case.tree, case.body, case.around
     frames = np.empty((len(tree.axis), 3, 4))
     centres = np.empty((len(body.frame), 3))
     stride, checks = 1, 0
@@ -231,8 +255,9 @@ def edge_free(tree, body, around, q0, q1, touching, step_m):
 
 
 @njit(cache=True)
-def path_clear(tree, body, around, path, touching, step_m):
+def path_clear(case, path, touching, step_m):
     """Return whether a path (t, 4 + a) is free of the boxes, whatever else it hits."""
+    tree, body, around = case.tree, case.body, case.around
     frames = np.empty((len(tree.axis), 3, 4))
     centres = np.empty((len(body.frame), 3))
     q, n_boxes = np.empty(path.shape[1]), len(around.boxes)
@@ -314,13 +339,14 @@ def _moved(q0, q1):
 
 
 @njit(cache=True)
-def way(tree, body, around, q, lattice, goal, root, is_lost):
+def way(case, q, lattice, goal, root, is_lost):
     """Return numbers of poses of a lattice from `goal` to `root`; none if no way is.
 
     Torso and arm are those of `q`, free of themselves. A* that checks a pose when it
     goes on from it: ways of furniture alone, which are known, bound what is left.
     Poses from which there is no way to `root` are known by `is_lost` (n,), and added.
     """
+    tree, body, around = case.tree, case.body, case.around
     n, q = len(lattice.poses), q.copy()
     frames = np.empty((len(tree.axis), 3, 4))
     centres = np.empty((len(body.frame), 3))
@@ -362,11 +388,12 @@ def _chain(back, last):
 
 
 @njit(cache=True)
-def hands_free(body, around, wrists, touching, out):
+def hands_free(case, wrists, touching, out):
     """Write into `out` (n,) whether what the last frame carries is free, at (n, 3, 4).
 
     The robot itself is not there: whatever arm brings the hand there hits no less.
     """
+    body, around = case.body, case.around
     last = len(body.lever_m) - 3
     frames = np.zeros((last + 1, 3, 4))
     centres = np.empty((len(body.frame), 3))
@@ -383,11 +410,12 @@ def hands_free(body, around, wrists, touching, out):
 
 
 @njit(cache=True)
-def hands_clear(tree, body, around, places, wrist, out):
+def hands_clear(case, places, wrist, out):
     """Write into `out` (n,) whether base and torso are clear of what the hand carries.
 
     They are at x, y, yaw and a height (n, 4), the last frame is at `wrist` (3, 4).
     """
+    tree, body, around = case.tree, case.body, case.around
     last, q = len(body.lever_m) - 3, np.zeros(len(body.lever_m))
     frames = np.empty((last + 1, 3, 4))
     centres = np.empty((len(body.frame), 3))
@@ -400,8 +428,9 @@ def hands_clear(tree, body, around, places, wrist, out):
 
 
 @njit(cache=True)
-def hand_boxes(body, around, wrist, touching, boxes):
+def hand_boxes(case, wrist, touching, boxes):
     """Write into `boxes` (b,) which are hit by what the last frame (3, 4) carries."""
+    body, around = case.body, case.around
     last = len(body.lever_m) - 3
     frames = np.zeros((last + 1, 3, 4))
     centres = np.empty((len(body.frame), 3))
@@ -415,8 +444,9 @@ def hand_boxes(body, around, wrist, touching, boxes):
 
 
 @njit(cache=True)
-def state_hits(tree, body, around, q, touching, boxes):
+def state_hits(case, q, touching, boxes):
     """Return whether scene and robot are hit; write it for each of `boxes` (b,)."""
+    tree, body, around = case.tree, case.body, case.around
     frames = np.empty((len(tree.axis), 3, 4))
     centres = np.empty((len(body.frame), 3))
     forward(tree, q, frames)
