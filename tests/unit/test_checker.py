@@ -19,7 +19,7 @@ from robot_room import (
 from scipy.ndimage import map_coordinates
 
 from placing import rigid
-from placing.robot.checker import SceneChecker, held, levers
+from placing.robot.checker import SceneChecker, held, levers, outermost
 from placing.robot.distance_field import distance_field, open_field
 from placing.robot.kernels import forward, n_steps
 from placing.robot.model import tool_pose
@@ -213,6 +213,40 @@ def test_what_is_held_must_not_hit_the_robot():
     inside = rigid.compose(T, rigid.from_yaw(0.0, (1.5, 1.5, 0.5)))
     assert checker().hits(q).self is False
     assert checker().hits(q, held("box", (0.1, 0.1, 0.1), inside)).self is True
+
+
+def test_robot_and_what_it_holds_hit_where_all_their_spheres_say():
+    model, long = pr2(), held("broom", (0.1, 0.1, 1.2), BESIDE)
+    last = len(model.tree.axis) - 1
+    gripper = {model.links.index(name) for name in model.settings.gripper_links}
+    others = [n not in gripper for n in model.spheres.link.tolist()]
+    T, found = model.tree.T_frame_tool, []
+    spheres = model.spheres._replace(
+        frame=np.full(len(long.radius_m), last),
+        at_m=long.centre_m @ T[:, :3].T + T[:, 3],
+    )
+    for q in anywhere(13, 150):
+        away = np.linalg.norm(
+            placed_at(spheres, q)[:, None] - centres_of(q)[others], axis=2
+        )
+        reach = long.radius_m[:, None] + model.spheres.radius_m[others]
+        found.append(bool(np.any(away < reach + CONFIG.self_margin_m)) or slow_self(q))
+        assert checker().hits(q, long).self == found[-1]
+    assert 20 < sum(found) < 130
+
+
+def test_no_point_moves_farther_than_the_outermost():
+    spheres, tree = pr2().spheres, pr2().tree
+    frame, at_m = outermost(spheres.frame, spheres.at_m)
+    some = spheres._replace(frame=frame, at_m=at_m)
+    assert len(at_m) < 0.8 * len(spheres.at_m)
+    for q0, q1 in pairwise(anywhere(14, 60)):
+        away = np.linalg.norm(placed_at(spheres, q1) - placed_at(spheres, q0), axis=1)
+        fewer = np.linalg.norm(placed_at(some, q1) - placed_at(some, q0), axis=1)
+        assert np.isclose(away.max(), fewer.max(), atol=1e-12)
+        lever_m = levers(pr2())
+        args = tree, spheres.frame, spheres.at_m, lever_m, q0, q1, 0.04
+        assert n_steps(*args) == n_steps(tree, frame, at_m, lever_m, q0, q1, 0.04)
 
 
 def test_checks_are_counted_together():

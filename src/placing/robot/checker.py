@@ -7,13 +7,15 @@ held, b boxes.
 """
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import ConvexHull, QhullError
 
 from placing import rigid
 from placing.rigid import Array
@@ -34,9 +36,12 @@ from placing.robot.kernels import (
     way,
 )
 from placing.robot.model import RobotModel
+from placing.robot.trunk import trunk_of
 
 MAX_CLUSTER = 8
 """Most spheres of a cluster; only speed depends on it."""
+N_BODIES = 4
+"""Robots without anything in the hand that are kept; a study has one."""
 UPRIGHT = np.array([0.0, 0.0, 1.0, 0.0])
 """The third axis of a frame, without its origin."""
 HELD_CELL_M = 0.05
@@ -288,6 +293,7 @@ class SceneChecker:
         )
 
 
+@lru_cache(maxsize=N_BODIES)
 def make_body(model: RobotModel, config: CheckerConfig) -> Body:
     """Return the spheres of a robot that holds nothing, sorted for the kernels."""
     spheres, tree = model.spheres, model.tree
@@ -300,17 +306,26 @@ def make_body(model: RobotModel, config: CheckerConfig) -> Body:
     position = {number: i for i, number in enumerate(numbers.tolist())}
     pairs = [(position[i], position[j]) for i, j in model.self_pairs.tolist()]
     lever_m, frame = levers(model), tree.link_frame[numbers]
-    n_spheres = [len(radius) for _, radius in parts]
+    trunk = trunk_of(parts, frame, pairs)
+    arms = [(i, j) for i, j in pairs if not _is_trunk(frame[i], frame[j])]
+    outer_frame, outer_m = outermost(spheres.frame, spheres.at_m)
     return Body(
         *_clustered(parts, config),
         frame=frame,
         is_gripper=np.isin(numbers, gripper),
         n_robot=len(numbers),
-        pairs=np.array(pairs, np.int64).reshape(-1, 2),
-        sphere_frame=np.repeat(frame, n_spheres),
+        pairs=np.array(arms, np.int64).reshape(-1, 2),
+        trunk=trunk,
+        outer_frame=outer_frame,
+        outer_m=outer_m,
         lever_m=lever_m,
         span_m=float(lever_m[2] + spheres.radius_m.max()),
     )
+
+
+def _is_trunk(one: int, other: int) -> bool:
+    """Return whether of two frames one is of the arm, and one of base or torso."""
+    return min(one, other) < 2 <= max(one, other)
 
 
 def holding(body: Body, model: RobotModel, held: Held, config: CheckerConfig) -> Body:
@@ -318,10 +333,12 @@ def holding(body: Body, model: RobotModel, held: Held, config: CheckerConfig) ->
     T = model.tree.T_frame_tool
     at = held.centre_m @ T[:, :3].T + T[:, 3]
     more = _clustered([(at, held.radius_m)], config)
-    pairs = [(body.n_robot, i) for i in np.flatnonzero(~body.is_gripper).tolist()]
+    others = ~body.is_gripper & (body.frame > 1)
+    pairs = [(body.n_robot, i) for i in np.flatnonzero(others).tolist()]
     ends = (more[3][1:] + body.cluster[-1], more[5][1:] + body.link[-1])
     lever_m, radius = levers(model, held.centre_m), np.append(body.radius_m, more[1])
     last = len(model.tree.axis) - 1
+    _, outer_m = outermost(np.full(len(at), last), at)
     return Body(
         np.vstack([body.at_m, more[0]]),
         radius,
@@ -333,8 +350,10 @@ def holding(body: Body, model: RobotModel, held: Held, config: CheckerConfig) ->
         frame=np.append(body.frame, last),
         is_gripper=np.append(body.is_gripper, True),
         n_robot=body.n_robot,
-        pairs=np.vstack([body.pairs, pairs]),
-        sphere_frame=np.append(body.sphere_frame, np.full(len(more[1]), last)),
+        pairs=np.vstack([body.pairs, np.reshape(pairs, (-1, 2))]),
+        trunk=body.trunk,
+        outer_frame=np.append(body.outer_frame, np.full(len(outer_m), last)),
+        outer_m=np.vstack([body.outer_m, outer_m]),
         lever_m=lever_m,
         span_m=float(lever_m[2] + radius.max()),
     )
@@ -383,6 +402,21 @@ def _ball(at: Array, radius: Array, config: CheckerConfig) -> Array:
     away = np.linalg.norm(at - centre, axis=1)
     reach = np.hypot(radius + config.margin_m, config.spacing_m)
     return np.array([*centre, (away + radius).max(), (away + reach).max()])
+
+
+def outermost(frame: NDArray[np.int64], at_m: Array) -> tuple[NDArray[np.int64], Array]:
+    """Return those of points (s, 3) in frames (s,) that all of a frame are between.
+
+    However a frame moves, none of its points moves farther than one of these.
+    """
+    chosen = [np.empty(0, np.int64)]
+    for number in np.unique(frame):
+        some = np.flatnonzero(frame == number)
+        with suppress(QhullError):  # of few or flat ones all are kept
+            some = some[ConvexHull(at_m[some]).vertices]
+        chosen.append(some)
+    rows = np.concatenate(chosen)
+    return frame[rows], at_m[rows]
 
 
 def levers(model: RobotModel, held_m: Array | None = None) -> Array:

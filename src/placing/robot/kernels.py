@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-inner = njit(cache=True, _nrt=False)  # pyright: ignore[reportCallIssue]
-"""Compiles what is called for each sphere and allocates nothing: without counting who
-uses an array, which takes half of the time of a check otherwise."""
+inner = njit(cache=True, _nrt=False, forceinline=True)  # pyright: ignore[reportCallIssue]
+"""Compiles what is called for each sphere and allocates nothing: in place of the call,
+and without counting who uses an array; calls and counts take most of the time else."""
 
 # ASSUME: what moves fastest in a third of a motion moves no more above its chords.
 CURVED = 1.2
@@ -116,6 +116,28 @@ def _slide(T: Array, axis: Array, distance_m: float) -> None:
 # Letters for shapes: l links that have spheres, c clusters of them, m pairs of links.
 
 
+class Trunk(NamedTuple):
+    """Base and torso, frames 0 and 1, as links of the arm may hit them.
+
+    Distances to spheres of the trunk tell at one look what is far from all of them.
+    """
+
+    origin_m: Array
+    """Centre of the first cell, in the frame of base or torso, (3,)."""
+    cell_m: float
+    around_m: float
+    """What is outside of the cells is farther than this from the trunk."""
+    least_m: NDArray[np.float32]
+    """No spot of a cell is nearer to a sphere of some links, (n, x, y, z)."""
+    number: NDArray[np.int64]
+    """Which of these are the distances to the links that a link may hit, what is held
+    last, of base and of torso; -1 where it may hit none, (l, 2)."""
+    first: NDArray[np.int64]
+    """The first of these links, those of the torso after those of the base, and the
+    end of the last, (l, 3)."""
+    links: NDArray[np.int64]
+
+
 class Body(NamedTuple):
     """Spheres sorted by link and cluster; what is held is a further, last link."""
 
@@ -140,9 +162,13 @@ class Body(NamedTuple):
     n_robot: int
     """Number of links of the robot; one more link is what is held."""
     pairs: NDArray[np.int64]
-    """Links that may hit each other, (m, 2)."""
-    sphere_frame: NDArray[np.int64]
-    """Number of the frame that carries each sphere, (s,)."""
+    """Links that may hit each other, those of arm and trunk left out, (m, 2)."""
+    trunk: "Trunk"
+    """What arm and trunk may hit of each other."""
+    outer_frame: NDArray[np.int64]
+    """Number of the frame that carries each of the outermost centres, (o,)."""
+    outer_m: Array
+    """Those centres, between which all others of their frame are, (o, 3)."""
     lever_m: Array
     """Farthest that a unit of each coordinate moves a centre, (4 + a,)."""
     span_m: float
@@ -239,7 +265,7 @@ def edge_free(case, q0, q1, touching, step_m):
         if is_hit(body, around, frames, centres, touching, moved):
             return False, checks
         moved = _moved(q0, q1)
-    n = n_steps(tree, body.sphere_frame, body.at_m, body.lever_m, q0, q1, step_m)
+    n = n_steps(tree, body.outer_frame, body.outer_m, body.lever_m, q0, q1, step_m)
     while stride < n:
         stride *= 2
     while stride > 1:  # halves first: what is in the way is found sooner
@@ -265,7 +291,7 @@ def path_clear(case, path, touching, step_m):
         q0, q1 = path[max(row - 1, 0)], path[row]
         if not _are_boxes_near(body, around, q0, q1):
             continue
-        n = n_steps(tree, body.sphere_frame, body.at_m, body.lever_m, q0, q1, step_m)
+        n = n_steps(tree, body.outer_frame, body.outer_m, body.lever_m, q0, q1, step_m)
         for i in range(n + 1):
             _blend(q0, q1, i / n, q)
             forward(tree, q, frames)
@@ -318,12 +344,21 @@ def n_steps(tree, frame, at_m, lever_m, q0, q1, step_m):
 @inner
 def _farthest(way, frame, at_m):
     """Return the largest square of how far points (s, 3) went, by frames' way."""
-    farthest = 0.0
+    farthest, last, is_still = 0.0, -1, False
     for i in range(len(at_m)):
-        T, x, y, z = way[frame[i]], at_m[i, 0], at_m[i, 1], at_m[i, 2]
+        f = frame[i]
+        if f != last:
+            last, is_still = f, True
+            for r in range(3):
+                for k in range(4):
+                    is_still = is_still and way[f, r, k] == 0.0
+        if is_still:
+            continue
+        x, y, z = at_m[i, 0], at_m[i, 1], at_m[i, 2]
         square = 0.0
         for r in range(3):
-            square += (T[r, 0] * x + T[r, 1] * y + T[r, 2] * z + T[r, 3]) ** 2
+            step = way[f, r, 0] * x + way[f, r, 1] * y + way[f, r, 2] * z + way[f, r, 3]
+            square += step * step
         farthest = max(farthest, square)
     return farthest
 
@@ -559,7 +594,7 @@ def _link_hits_box(body, around, frames, k, b, touching):
     return False
 
 
-@inner
+@njit(cache=True)
 def _hits_itself(body, around, frames, centres, moved):
     """Return whether two links with a moved joint between them come too near."""
     frame, pairs, ball, margin = (
@@ -568,6 +603,8 @@ def _hits_itself(body, around, frames, centres, moved):
         body.link_ball,
         around.self_margin_m,
     )
+    if _hits_trunk(body, frames, centres, margin, moved):
+        return True
     for n in range(len(pairs)):
         k, m = pairs[n, 0], pairs[n, 1]
         reach = ball[k, 3] + ball[m, 3] + margin
@@ -586,6 +623,79 @@ def _hits_itself(body, around, frames, centres, moved):
             if _hits_cluster(args, d, first_k, last_k, frame[m], frame[k], margin):
                 return True
     return False
+
+
+@inner
+def _hits_trunk(body, frames, centres, margin, moved):
+    """Return whether a link of the arm comes too near to base or torso."""
+    trunk, ball = body.trunk, body.link_ball
+    for k in range(len(body.frame)):
+        if body.frame[k] < moved[0]:
+            continue
+        for f in range(min(2, moved[1])):
+            t = trunk.number[k, f]
+            if t < 0:
+                continue
+            x, y, z = centres[k, 0], centres[k, 1], centres[k, 2]
+            if not _is_near_trunk(trunk, t, frames, f, x, y, z, ball[k, 3] + margin):
+                continue
+            if _link_hits_trunk(body, frames, centres, margin, k, f):
+                return True
+    return False
+
+
+@inner
+def _link_hits_trunk(body, frames, centres, margin, k, f):
+    """Return whether a link of the arm comes too near to base (f = 0) or torso (1)."""
+    trunk, ball, g = body.trunk, body.cluster_ball, body.frame[k]
+    t, args = trunk.number[k, f], (ball, body.at_m, body.radius_m, body.cluster, frames)
+    for c in range(body.link[k], body.link[k + 1]):
+        x, y, z = _point(frames, g, ball, c)
+        if not _is_near_trunk(trunk, t, frames, f, x, y, z, ball[c, 3] + margin):
+            continue
+        for n in range(trunk.first[k, f], trunk.first[k, f + 1]):
+            m = trunk.links[n]
+            reach = body.link_ball[m, 3] + ball[c, 3] + margin
+            if _square(centres, m, x, y, z) >= reach * reach:
+                continue
+            for d in range(body.link[m], body.link[m + 1]):
+                if _hits_cluster(args, d, c, c + 1, f, g, margin):
+                    return True
+    return False
+
+
+@inner
+def _is_near_trunk(trunk, t, frames, f, x, y, z, reach_m):
+    """Return whether a point may be nearer than `reach_m` to some links of frame f."""
+    x, y, z = x - frames[f, 0, 3], y - frames[f, 1, 3], z - frames[f, 2, 3]
+    scale, origin = 1.0 / trunk.cell_m, trunk.origin_m
+    u = frames[f, 0, 0] * x + frames[f, 1, 0] * y + frames[f, 2, 0] * z - origin[0]
+    v = frames[f, 0, 1] * x + frames[f, 1, 1] * y + frames[f, 2, 1] * z - origin[1]
+    w = frames[f, 0, 2] * x + frames[f, 1, 2] * y + frames[f, 2, 2] * z - origin[2]
+    u, v, w = u * scale + 0.5, v * scale + 0.5, w * scale + 0.5
+    _, nx, ny, nz = trunk.least_m.shape
+    if not (0.0 <= u < nx and 0.0 <= v < ny and 0.0 <= w < nz):
+        return reach_m > trunk.around_m
+    return trunk.least_m[t, int(u), int(v), int(w)] < reach_m
+
+
+@inner
+def least_distances(at_m, radius_m, origin_m, cell_m, out):
+    """Write below which distance no spot of a cell is from spheres (s,) into `out`."""
+    slack = 0.867 * cell_m  # half the diagonal of a cell
+    nx, ny, nz = out.shape
+    for i in range(nx):
+        for j in range(ny):
+            for k in range(nz):
+                x = origin_m[0] + i * cell_m
+                y = origin_m[1] + j * cell_m
+                z = origin_m[2] + k * cell_m
+                least = np.inf
+                for n in range(len(at_m)):
+                    u, v, w = at_m[n, 0] - x, at_m[n, 1] - y, at_m[n, 2] - z
+                    away = np.sqrt(u * u + v * v + w * w) - radius_m[n]
+                    least = min(least, away)
+                out[i, j, k] = least - slack
 
 
 @inner

@@ -21,9 +21,9 @@ from placing.robot.urdf import Description, Joint, read_urdf
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RobotModel:
-    """A robot ready to be placed, checked and moved."""
+    """A robot ready to be placed, checked and moved; equal only to itself."""
 
     settings: RobotSettings
     description: Description
