@@ -311,6 +311,20 @@ def test_steps_of_an_edge_are_as_short_as_they_say_also_for_what_is_held():
     assert 0.7 < longest <= 1.02
 
 
+def test_rows_free_without_boxes_are_free_among_them_where_they_are_clear():
+    alone, rng = checker().with_boxes(np.zeros((0, 7))), np.random.default_rng(12)
+    rows = anywhere(15, 2000)
+    rows = rows[alone.are_free(rows, touching=True)]
+    sizes = np.tile([0.3, 0.3, 0.4, 0.2], (8, 1))
+    boxes = np.hstack([rng.uniform((0, 0, 0.2), (4, 3, 1.2), (8, 3)), sizes])
+    among = checker().with_boxes(boxes)
+    for what in (None, held("mug", (0.1, 0.1, 0.1), BESIDE)):
+        some = rows[alone.are_free(rows, what, touching=True)]
+        clear = among.are_clear(some, what, touching=True)
+        assert np.array_equal(clear, among.are_free(some, what, touching=True))
+        assert 0.05 < clear.mean() < 0.95
+
+
 def test_a_path_is_clear_of_boxes_where_each_of_its_configurations_is():
     boxless, tree = SceneChecker(pr2(), open_field(), CONFIG), pr2().tree
     rng, found = np.random.default_rng(11), []

@@ -55,7 +55,8 @@ def test_no_configuration_is_free_where_the_hand_alone_is_not():
 
 def test_solutions_of_different_bases_come_before_second_ones():
     _, _, rows = hands()
-    ordered = best_first(rows, pr2().settings.carry)
+    _, base = np.unique(rows[:, :3], axis=0, return_inverse=True)
+    ordered = best_first(rows, base.ravel(), pr2().settings.carry)
     assert sorted(map(tuple, ordered)) == sorted(map(tuple, rows))
     n_bases = len(np.unique(rows[:, :3], axis=0))
     assert len(np.unique(ordered[:n_bases, :3], axis=0)) == n_bases

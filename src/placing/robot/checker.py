@@ -25,6 +25,7 @@ from placing.robot.kernels import (
     Case,
     Lattice,
     Surroundings,
+    are_clear,
     are_free,
     case_of,
     edge_free,
@@ -143,6 +144,18 @@ class SceneChecker:
         out = np.empty(len(rows), np.bool_)
         are_free(self._case(held), rows, touching, out)
         self._count(len(rows))
+        return out
+
+    def are_clear(
+        self, configurations: Array, held: Held | None = None, touching: bool = False
+    ) -> NDArray[np.bool_]:
+        """Return whether each of (t, 4 + a) is free of the boxes, whatever else, (t,).
+
+        With rows that are free where there are no boxes it says what `are_free` says.
+        """
+        rows = np.ascontiguousarray(configurations, float)
+        out = np.empty(len(rows), np.bool_)
+        are_clear(self._case(held), rows, touching, out)
         return out
 
     def are_hands_free(

@@ -97,11 +97,14 @@ def free_goals(search: Search, T_world_tool: Array, held: Held) -> Iterator[Arra
         if not (arms.is_reached & search.stands).any():
             continue
         search.reached(GOAL_HIT)
-        rows = arms.rows[search.stands[arms.base]]
-        is_free = checker.are_free(rows, held, touching=True)
+        stands = search.stands[arms.base]
+        rows, bases = arms.rows[stands], arms.base[stands]
+        # They are free where nothing else stands.
+        is_free = checker.are_clear(rows, held, touching=True)
         search.n_free += int(is_free.sum())
         if len(checker.boxes) > len(search.alone.boxes) and not search.n_free:
             for row in rows:
                 hits = checker.hits(row, held, touching=True)
                 search.blocked.append(frozenset(hits.boxes))
-        yield from best_first(rows[is_free], checker.model.settings.carry)
+        carry = checker.model.settings.carry
+        yield from best_first(rows[is_free], bases[is_free], carry)

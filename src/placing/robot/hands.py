@@ -46,6 +46,18 @@ class Hands:
         """Take the checker of the scene alone, and remember nothing yet."""
         self.alone = alone
         self._found: dict[tuple[bytes, int], list[Arms]] = {}
+        self._rises: dict[tuple[bytes, int], bool] = {}
+
+    def rises(self, low: Array, high: Array, held: Held | None) -> bool:
+        """Return whether the torso is free on its way up, from (4 + a,) to (4 + a,).
+
+        Whoever asks for the same upper end asks for the same lower one; `held` has to
+        be kept.
+        """
+        key = high.tobytes(), id(held)
+        if key not in self._rises:
+            self._rises[key] = self.alone.is_edge_free(low, high, held)
+        return self._rises[key]
 
     def arms(self, bases: Array, T_world_tool: Array, held: Held) -> Iterator[Arms]:
         """Yield the arms from some of the bases (b, 3) after those from others.
@@ -127,16 +139,15 @@ def _near_to(arms: Array, model: RobotModel) -> Array:
     return arms
 
 
-def best_first(rows: Array, carry: tuple[float, ...]) -> Array:
+def best_first(rows: Array, base: NDArray[np.int64], carry: tuple[float, ...]) -> Array:
     """Return solutions nearest to the carried arm first, one of each base before more.
 
-    Rows are (k, 4 + a), sorted into the same shape.
+    Rows are (k, 4 + a), sorted into the same shape; their bases are numbered (k,).
     """
     away = np.abs(rows[:, 4:] - np.asarray(carry)).max(1)
     order = np.argsort(away, kind="stable")
-    _, base = np.unique(rows[order, :3], axis=0, return_inverse=True)
-    turn = np.zeros(len(rows), int)
-    seen: dict[int, int] = {}
-    for i, number in enumerate(base.ravel().tolist()):
-        turn[i] = seen[number] = seen.get(number, -1) + 1
+    turn, seen = np.empty(len(rows), int), dict.fromkeys(base.tolist(), 0)
+    for i, number in enumerate(base[order].tolist()):
+        turn[i] = seen[number]
+        seen[number] += 1
     return rows[order][np.argsort(turn, kind="stable")]

@@ -250,6 +250,19 @@ def are_free(case, configurations, touching, out):
 
 
 @njit(cache=True)
+def are_clear(case, configurations, touching, out):
+    """Write whether each of (t, 4 + a) is free of the boxes, whatever else it hits."""
+    tree, body, around = case.tree, case.body, case.around
+    frames = np.empty((len(tree.axis), 3, 4))
+    centres = np.empty((len(body.frame), 3))
+    for i in range(len(configurations)):
+        forward(tree, configurations[i], frames)
+        _place_links(body, frames, centres)
+        box = _first_box(body, around, frames, centres, touching, 0, 0)
+        out[i] = box == len(around.boxes)
+
+
+@njit(cache=True)
 def edge_free(case, q0, q1, touching, step_m):
     """Return whether a straight line of configurations is free, and the checks made."""
     tree, body, around = case.tree, case.body, case.around

@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from placing.robot.kernels import Tree
+from placing.robot.kernels import Tree, inner
 
 Array = NDArray[np.float64]
 
@@ -61,10 +61,10 @@ def pr2_arm(tree: Tree, lower: Array, upper: Array) -> Pr2Arm | None:
 @njit(cache=True)
 def solve(arm: Pr2Arm, T_torso_wrist: Array, pans: Array, out: Array) -> int:
     """Write the solutions of all pans into `out` (k, 7) and return their number."""
-    k = 0
+    k, M = 0, np.empty((3, 3))
     for pan in pans:
         if arm.lower[0] <= pan <= arm.upper[0]:
-            k = _solve_pan(arm, T_torso_wrist, pan, out, k)
+            k = _solve_pan(arm, T_torso_wrist, pan, M, out, k)
     return k
 
 
@@ -80,14 +80,14 @@ def solve_many(
 
     Poses whose solutions might not fit into `out` (k, 7) are left out.
     """
-    k = 0
+    k, M = 0, np.empty((3, 3))
     for i in range(len(Ts_torso_wrist)):
         if k + N_MOST * len(pans) > len(out):
             break
         first = k
         for pan in pans:
             if arm.lower[0] <= pan <= arm.upper[0]:
-                k = _solve_pan(arm, Ts_torso_wrist[i], pan, out, k)
+                k = _solve_pan(arm, Ts_torso_wrist[i], pan, M, out, k)
         which[first:k] = i
     return k
 
@@ -107,7 +107,7 @@ def follow_line(
     Returned is how many poses are reached before a joint would turn more than
     `max_step`; `steps` are the changes of the pan that are tried.
     """
-    some = np.empty((N_MOST, 7))
+    some, M = np.empty((N_MOST, 7)), np.empty((3, 3))
     last, best, near = start.copy(), np.empty(7), np.empty(7)
     for i in range(len(Ts_torso_wrist)):
         least = np.inf
@@ -117,7 +117,7 @@ def follow_line(
             pan = last[0] + step
             if not arm.lower[0] <= pan <= arm.upper[0]:
                 continue
-            n = _solve_pan(arm, Ts_torso_wrist[i], pan, some, 0)
+            n = _solve_pan(arm, Ts_torso_wrist[i], pan, M, some, 0)
             for k in range(n):
                 turned = 0.0
                 for j in range(7):
@@ -136,9 +136,12 @@ def follow_line(
     return len(Ts_torso_wrist)
 
 
-@njit(cache=True)
-def _solve_pan(arm: Pr2Arm, T: Array, pan: float, out: Array, k: int) -> int:
-    """Add the solutions of one pan from row k on and return the next free row."""
+@inner
+def _solve_pan(arm: Pr2Arm, T: Array, pan: float, M: Array, out: Array, k: int) -> int:
+    """Add the solutions of one pan from row k on and return the next free row.
+
+    `M` (3, 3) is written over.
+    """
     c, s = np.cos(pan), np.sin(pan)
     x = T[0, 3] - arm.shoulder_m[0] - c * arm.offset_m
     y = T[1, 3] - arm.shoulder_m[1] - s * arm.offset_m
@@ -161,16 +164,21 @@ def _solve_pan(arm: Pr2Arm, T: Array, pan: float, out: Array, k: int) -> int:
             w = uz * np.cos(roll)
             lift = np.arctan2(vx * w - vz * ux, vx * ux + vz * w)
             if arm.lower[1] <= lift <= arm.upper[1]:
-                k = _solve_wrist(arm, T, (pan, lift, roll, elbow), out, k)
+                k = _solve_wrist(arm, T, (pan, lift, roll, elbow), M, out, k)
     return k
 
 
-@njit(cache=True)
+@inner
 def _solve_wrist(
-    arm: Pr2Arm, T: Array, first: tuple[float, float, float, float], out: Array, k: int
+    arm: Pr2Arm,
+    T: Array,
+    first: tuple[float, float, float, float],
+    M: Array,
+    out: Array,
+    k: int,
 ) -> int:
     """Add the solutions of one position of the elbow and return the next free row."""
-    M = _turned_back(T, first)
+    _turn_back(T, first, M)
     sine = np.sqrt(M[0, 1] ** 2 + M[0, 2] ** 2)
     for side in range(2):
         sign = 1.0 - 2.0 * side
@@ -194,18 +202,19 @@ def _solve_wrist(
     return k
 
 
-@njit(cache=True)
-def _turned_back(T: Array, first: tuple[float, float, float, float]) -> Array:
-    """Return the rotation that pan, lift, roll and elbow leave to the wrist, (3, 3)."""
-    M = T[:, :3].copy()
+@inner
+def _turn_back(T: Array, first: tuple[float, float, float, float], M: Array) -> None:
+    """Write the rotation that pan, lift, roll and elbow leave to the wrist, (3, 3)."""
+    for i in range(3):
+        for j in range(3):
+            M[i, j] = T[i, j]
     _about(M, 0, 1, -first[0])
     _about(M, 2, 0, -first[1])
     _about(M, 1, 2, -first[2])
     _about(M, 2, 0, -first[3])
-    return M
 
 
-@njit(cache=True)
+@inner
 def _about(M: Array, i: int, j: int, angle: float) -> None:
     """Turn the rows of a matrix in the plane from axis i to axis j [rad]."""
     c, s = np.cos(angle), np.sin(angle)

@@ -66,7 +66,10 @@ class Stances:
     ) -> bool:
         """Return whether the torso is free from below up to its height in `q`."""
         low = self.floor.configurations(q[:3], arm=arm)[0]
-        return checker.is_edge_free(low, np.concatenate([q[:4], arm]), held)
+        high = np.concatenate([q[:4], arm])
+        if not self.search.hands.rises(low, high, held):
+            return False
+        return checker.is_path_clear(np.array([low, high]), held)
 
     def _drive(
         self, checker: SceneChecker, q: Array, arm: Array, held: Held | None
