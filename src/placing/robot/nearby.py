@@ -83,6 +83,8 @@ class Scratch(NamedTuple):
     """Centres of all spheres in the world, (s, 3)."""
     balls: Array
     """Centres of all balls in the world, (l, 3)."""
+    seen: Array
+    """Centres of the spheres of a link as a thing sees them, (s, 3)."""
 
 
 def solids_of(spheres: Spheres, pairs: Numbers) -> Solids:
@@ -115,6 +117,7 @@ def scratch_of(solids: Solids, n_frames: int) -> Scratch:
         np.empty((n_frames, 3, 4)),
         np.empty_like(solids.at_m),
         np.empty((len(solids.ball), 3)),
+        np.empty_like(solids.at_m),
     )
 
 
@@ -168,26 +171,98 @@ def near(tree, q, solids, things, held, scratch, out):
     `out` (l + 1, k + l) says which: a link, or last what is held, with a thing or a
     link. What is held is moved.
     """
-    frames, last = scratch.frames, len(scratch.frames) - 1
+    frames, n_things = scratch.frames, len(things.is_here)
     forward(tree, q, frames)
     if held.thing >= 0:
-        hang(frames[last], held.T_frame_thing, things.T_world_thing[held.thing])
+        hang(frames[-1], held.T_frame_thing, things.T_world_thing[held.thing])
     _place(solids, scratch)
     out[:] = False
-    count = 0
-    for k in range(len(things.is_here)):
+    count = _near_itself(solids, scratch, n_things, out)
+    reach = _reach(scratch.balls, solids.ball)
+    for k in range(n_things):
         if not things.is_here[k]:
             continue
-        for i in range(len(solids.frame)):
-            if k == held.thing and held.is_known and solids.frame[i] == last:
-                continue
-            if _is_link_near(solids, things, scratch, i, k):
-                out[i, k] = True
-                count += 1
+        at = _seen_from(things.T_world_thing[k], scratch.balls[0])
+        if _square(things.box[k], at) <= reach * reach:
+            is_known = held.is_known and k == held.thing
+            count += _near_links(solids, things, scratch, k, is_known, out)
         if held.thing >= 0 and k != held.thing and _is_held_near(things, held.thing, k):
             out[len(solids.frame), k] = True
             count += 1
-    return count + _near_itself(solids, scratch, len(things.is_here), out)
+    return count
+
+
+@inner
+def _reach(balls, ball):
+    """Return the radius of a ball around all balls, about the centre of the first."""
+    reach = 0.0
+    for i in range(len(balls)):
+        reach = max(reach, np.sqrt(_apart(balls[0], balls[i])) + ball[i, 3])
+    return reach
+
+
+@inner
+def _near_links(solids, things, scratch, k, is_known, out):
+    """Mark the links that may overlap with a thing and return how many there are.
+
+    Those of the last frame are left out if `is_known`.
+    """
+    T, box, count = things.T_world_thing[k], things.box[k], 0
+    first, end = things.first[k], things.first[k + 1]
+    for i in range(len(solids.frame)):
+        if is_known and solids.frame[i] == len(scratch.frames) - 1:
+            continue
+        radius = solids.ball[i, 3]
+        if _square(box, _seen_from(T, scratch.balls[i])) > radius * radius:
+            continue
+        spheres = solids.first[i], solids.first[i + 1]
+        bounds = _see(T, scratch.centres, solids.radius_m, spheres, scratch.seen)
+        for t in range(first, end):
+            if _do_boxes_meet(things.leaf_box[t], bounds) and _is_leaf_near(
+                things.leaf_box[t], things.plane[t], scratch, solids.radius_m, spheres
+            ):
+                out[i, k] = True
+                count += 1
+                break
+    return count
+
+
+@inner
+def _see(T, centres, radius, spheres, seen):
+    """Write spheres as the frame (3, 4) sees them; return the box around them."""
+    a = b = c = np.inf
+    d = e = f = -np.inf
+    for s in range(spheres[0], spheres[1]):
+        x, y, z = _seen_from(T, centres[s])
+        seen[s, 0], seen[s, 1], seen[s, 2] = x, y, z
+        r = radius[s]
+        a, b, c = min(a, x - r), min(b, y - r), min(c, z - r)
+        d, e, f = max(d, x + r), max(e, y + r), max(f, z + r)
+    return a, b, c, d, e, f
+
+
+@inner
+def _do_boxes_meet(one, other):
+    """Return whether two boxes (6,) of one frame meet."""
+    return (
+        one[0] <= other[3]
+        and one[3] >= other[0]
+        and one[1] <= other[4]
+        and one[4] >= other[1]
+        and one[2] <= other[5]
+        and one[5] >= other[2]
+    )
+
+
+@inner
+def _is_leaf_near(box, plane, scratch, radius, spheres):
+    """Return whether a sphere that a thing sees may overlap with a leaf of it."""
+    for s in range(spheres[0], spheres[1]):
+        at, r = scratch.seen[s], radius[s]
+        height = plane[0] * at[0] + plane[1] * at[1] + plane[2] * at[2] + plane[3]
+        if abs(height) <= r and _square(box, at) <= r * r:
+            return True
+    return False
 
 
 @inner
@@ -229,32 +304,6 @@ def _square(box, at):
 
 
 @inner
-def _is_leaf_near(things, t, at, radius):
-    """Return whether a sphere in the frame of the thing may overlap with a leaf."""
-    if _square(things.leaf_box[t], at) > radius * radius:
-        return False
-    n = things.plane[t]
-    return abs(n[0] * at[0] + n[1] * at[1] + n[2] * at[2] + n[3]) <= radius
-
-
-@inner
-def _is_link_near(solids, things, scratch, i, k):
-    """Return whether a link may overlap with a thing."""
-    T, radius = things.T_world_thing[k], solids.ball[i, 3]
-    ball = _seen_from(T, scratch.balls[i])
-    if _square(things.box[k], ball) > radius * radius:
-        return False
-    for t in range(things.first[k], things.first[k + 1]):
-        if not _is_leaf_near(things, t, ball, radius):
-            continue
-        for s in range(solids.first[i], solids.first[i + 1]):
-            at = _seen_from(T, scratch.centres[s])
-            if _is_leaf_near(things, t, at, solids.radius_m[s]):
-                return True
-    return False
-
-
-@inner
 def _is_held_near(things, h, k):
     """Return whether the box around a thing `h` may overlap with another thing."""
     own, T_h, T_k = things.box[h], things.T_world_thing[h], things.T_world_thing[k]
@@ -270,10 +319,18 @@ def _is_held_near(things, h, k):
         _half_along(own, T_h, T_k[:, 1]),
         _half_along(own, T_h, T_k[:, 2]),
     )
-    if not _do_meet(things.box[k], at, half):
+    bounds = (
+        at[0] - half[0],
+        at[1] - half[1],
+        at[2] - half[2],
+        at[0] + half[0],
+        at[1] + half[1],
+        at[2] + half[2],
+    )
+    if not _do_boxes_meet(things.box[k], bounds):
         return False
     for t in range(things.first[k], things.first[k + 1]):
-        if _do_meet(things.leaf_box[t], at, half) and _does_cut(
+        if _do_boxes_meet(things.leaf_box[t], bounds) and _does_cut(
             things.plane[t], own, T_h, T_k, at
         ):
             return True
@@ -291,15 +348,6 @@ def _half_along(box, T, axis):
 
 
 @inner
-def _do_meet(box, at, half):
-    """Return whether a box (6,) meets one with a middle and half widths, (3,) each."""
-    for i in range(3):
-        if box[i] > at[i] + half[i] or box[i + 3] < at[i] - half[i]:
-            return False
-    return True
-
-
-@inner
 def _does_cut(plane, own, T_h, T_k, at):
     """Return whether a plane (4,) of one thing cuts the box of another; 0 always."""
     normal = (
@@ -314,25 +362,31 @@ def _does_cut(plane, own, T_h, T_k, at):
 @inner
 def _near_itself(solids, scratch, n_things, out):
     """Mark the pairs of links that may overlap and return how many there are."""
-    count = 0
+    count, balls, centres = 0, scratch.balls, scratch.centres
     for p in range(len(solids.pairs)):
-        i, j = solids.pairs[p]
+        i, j = solids.pairs[p, 0], solids.pairs[p, 1]
         reach = solids.ball[i, 3] + solids.ball[j, 3]
-        if _apart(scratch.balls[i], scratch.balls[j]) <= reach * reach:
-            if _are_links_near(solids, scratch.centres, i, j):
+        if _apart(balls[i], balls[j]) > reach * reach:
+            continue
+        for a in range(solids.first[i], solids.first[i + 1]):
+            reach = solids.radius_m[a] + solids.ball[j, 3]
+            if _apart(centres[a], balls[j]) > reach * reach:
+                continue
+            spheres = solids.first[j], solids.first[j + 1]
+            if _is_sphere_near(centres, solids.radius_m, a, spheres):
                 out[i, n_things + j] = True
                 count += 1
+                break
     return count
 
 
 @inner
-def _are_links_near(solids, centres, i, j):
-    """Return whether spheres of two links overlap."""
-    for a in range(solids.first[i], solids.first[i + 1]):
-        for b in range(solids.first[j], solids.first[j + 1]):
-            reach = solids.radius_m[a] + solids.radius_m[b]
-            if _apart(centres[a], centres[b]) <= reach * reach:
-                return True
+def _is_sphere_near(centres, radius, a, spheres):
+    """Return whether one sphere overlaps with one of several."""
+    for b in range(spheres[0], spheres[1]):
+        reach = radius[a] + radius[b]
+        if _apart(centres[a], centres[b]) <= reach * reach:
+            return True
     return False
 
 
