@@ -8,6 +8,7 @@ s spheres, k things, t leaves (triangles or convex pieces), p pairs of links, f 
 # ruff: noqa: ANN001, ANN201, ANN202 (the compiler infers types from the arguments)
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -88,13 +89,13 @@ class Scratch(NamedTuple):
 
 
 def solids_of(spheres: Spheres, pairs: Numbers) -> Solids:
-    """Return the spheres of a robot by link; `pairs` (p, 2) count links of the model."""
+    """Return the spheres of a robot by link; `pairs` (p, 2) are links of the model."""
     order = np.argsort(spheres.link, kind="stable")
     at_m, radius_m = spheres.at_m[order], spheres.radius_m[order] + SPARE_M
     link, first = np.unique(spheres.link[order], return_index=True)
     ends = np.append(first, len(order))
     balls = []
-    for a, b in zip(ends[:-1], ends[1:], strict=True):
+    for a, b in pairwise(ends):
         low = (at_m[a:b] - radius_m[a:b, None]).min(0)
         high = (at_m[a:b] + radius_m[a:b, None]).max(0)
         centre = (low + high) / 2
@@ -190,6 +191,15 @@ def near(tree, q, solids, things, held, scratch, out):
             out[len(solids.frame), k] = True
             count += 1
     return count
+
+
+@njit(cache=True)
+def near_thing(things, h, out):
+    """Write into `out` (at least k,) with which things a thing `h` may overlap."""
+    out[:] = False
+    for k in range(len(things.is_here)):
+        if k != h and things.is_here[k]:
+            out[k] = _is_held_near(things, h, k)
 
 
 @inner

@@ -21,6 +21,7 @@ from placing.physics.putting_down import put_down
 from placing.physics.settling import SettleConfig, settle
 from placing.physics.simulator import (
     MAX_STEEPNESS,
+    World,
     add_body,
     add_fixed,
     new_world,
@@ -34,6 +35,7 @@ from placing.robot.nearby import (
     NOTHING_HELD,
     Held,
     near,
+    near_thing,
     no_things,
     scratch_of,
     solids_of,
@@ -273,13 +275,29 @@ class Truth:
 
     def touching_pose(self, object_id: str, reach_m: float) -> Array:
         """Move an object up or down until it touches; return where it is, (7,)."""
-        away = np.zeros(4 + self._model.n_arm)
-        away[:2] = AWAY_M
-        self._set(away)
         i, body, T_world_object = self._standing[object_id]
-        T = put_down(self._world, {i: (body, T_world_object)}, reach_m)[i][1]
-        self._standing[object_id] = (i, body, T)
+        start = {i: (body, T_world_object)}
+        T = put_down(self._world, start, reach_m, self._depth_of)[i][1]
+        self._move(object_id, T)
         return T
+
+    def _depth_of(self, world: World, i: int) -> float:
+        """Return how deep a body of the simulator overlaps with things [m]."""
+        at, (x, y, z, w) = pybullet.getBasePositionAndOrientation(i, world.client)
+        thing, out = self._bodies.index(i), self._near[-1]
+        T_world_thing = rigid.homogeneous(np.array([w, x, y, z, *at]))
+        self._things.T_world_thing[thing] = T_world_thing[:3]
+        near_thing(self._things, thing, out)
+        depths = [
+            o.depth_m
+            for other in self._others()
+            for o in overlaps(world, i, (-1, other, -1))
+        ]
+        return max(depths, default=0.0)
+
+    def _others(self) -> list[int]:
+        """Return the bodies that what is held may overlap with."""
+        return [self._bodies[k] for k in np.flatnonzero(self._near[-1]).tolist()]
 
     def let_go(self, object_id: str, above_m: float, reach_m: float) -> str:
         """Return why an object does not stay that is let go above where it stands.
@@ -341,7 +359,7 @@ class Truth:
         return found
 
     def _near_pairs(self) -> list[tuple[int, int, int]]:
-        """Return what the robot may overlap with: its link, other body, link of that."""
+        """Return what may overlap with the robot: its link, other body, link of that."""
         n_things, pairs = len(self._bodies), []
         for row, column in np.argwhere(self._near[:-1]).tolist():
             link = self._solid[row]
@@ -355,10 +373,9 @@ class Truth:
     def _held_hits(self, held_id: str, depth_m: float) -> set[str]:
         """Return what a held object overlaps with by at least `depth_m`."""
         i = self._standing[held_id][0]
-        others = [self._bodies[k] for k in np.flatnonzero(self._near[-1]).tolist()]
         return {
             f"{held_id}/{self._world.names[other]}"
-            for other in others
+            for other in self._others()
             if self._is_overlap(i, (-1, other, -1), depth_m)
         }
 
