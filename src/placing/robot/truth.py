@@ -359,7 +359,7 @@ class Truth:
         return found
 
     def _near_pairs(self) -> list[tuple[int, int, int]]:
-        """Return what may overlap with the robot: its link, other body, link of that."""
+        """Return which link may overlap with which body, and with which link of it."""
         n_things, pairs = len(self._bodies), []
         for row, column in np.argwhere(self._near[:-1]).tolist():
             link = self._solid[row]
