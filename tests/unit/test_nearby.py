@@ -73,23 +73,32 @@ def test_all_that_is_hit_is_near(monkeypatch, triangles, is_holding):
 
 
 def test_what_is_held_is_looked_at_with_the_hand_in_the_first_row_alone(monkeypatch):
-    path, seen = np.array([HIGH, HIGH]), []
+    path, seen, real = np.array([HIGH, HIGH]), [], module.near
+    path[1, 0] += 0.1
+
+    def near(*args):
+        count = real(*args)
+        seen.append([args[-1][:-1, k].any() for k in columns])
+        return count
+
+    monkeypatch.setattr(module, "near", near)
+    T = rigid.from_yaw(0.0, (0.0, 0.0, 0.0))
+    with Truth(pr2(), pieces(), CONFIG, SETTLING) as truth:
+        truth.put("mug", MUG, rigid.from_yaw(0.0, (0, 0, 9)))
+        truth.put("box", BOX, rigid.from_yaw(0.0, (2.42, 1.25, 0.9)))
+        names = "mug", "box"
+        columns = [truth._bodies.index(truth._standing[name][0]) for name in names]
+        assert truth.check_path(path, "mug", T) == "mug/box after row 0"
+    assert [of_mug for of_mug, _ in seen] == [True, *[False] * (len(seen) - 1)]
+    assert seen[-1][1]
+
+
+def test_what_is_held_is_left_where_the_path_ends():
+    path, T = np.array([HIGH, HIGH]), rigid.from_yaw(0.0, (0.0, 0.0, 0.0))
     path[1, 0] += 0.1
     with Truth(pr2(), pieces(), CONFIG, SETTLING) as truth:
-        real = module.near
-
-        def near(*args):
-            count = real(*args)
-            seen.append(args[-1][:-1, truth._bodies.index(i)].any())
-            return count
-
         truth.put("mug", MUG, rigid.from_yaw(0.0, (0, 0, 9)))
-        i = truth._standing["mug"][0]
-        monkeypatch.setattr(module, "near", near)
-        T = rigid.from_yaw(0.0, (0.0, 0.0, 0.0))
         assert truth.check_path(path, "mug", T) == ""
-        assert seen[0]
-        assert not any(seen[1:])
         at = rigid.compose(tool_pose(pr2(), path[1]), T)
         assert truth._standing["mug"][2] == pytest.approx(at)
         truth.remove("mug")
