@@ -50,7 +50,7 @@ def test_in_the_open_nothing_is_hit_and_a_wall_is(truth):
 
 def test_its_links_are_where_the_model_says(truth):
     q = anywhere(0, 1)[0]
-    truth.hits(q)
+    truth._set(q)
     poses = link_poses(pr2().tree, q)
     values = fixed_values(pr2().settings, pr2().description, 0.086)
     for i, name in truth._links.items():

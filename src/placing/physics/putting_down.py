@@ -4,7 +4,7 @@ A placement found in a scan is as high as the scan says, a centimetre more or le
 puts an object down feels when it touches. The hand goes no further than it can trust.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import pybullet
@@ -22,20 +22,38 @@ TOUCH_M = 0.0005
 """Guards the comparison of what touches with what overlaps."""
 
 
+def deepest(world: World, i: int) -> float:
+    """Return how deep a body overlaps with anything where it is now [m]."""
+    pybullet.performCollisionDetection(world.client)
+    return deepest_overlap(world, i)[0]
+
+
 def put_down(
-    world: World, starts: Mapping[int, tuple[Body, Array]], reach_m: float
+    world: World,
+    starts: Mapping[int, tuple[Body, Array]],
+    reach_m: float,
+    depth_of: Callable[[World, int], float] = deepest,
 ) -> dict[int, tuple[Body, Array]]:
-    """Return bodies with the poses at which they touch, put down lowest first."""
+    """Return bodies with the poses at which they touch, put down lowest first.
+
+    `depth_of` says how deep a body overlaps with anything where it is [m].
+    """
     for number, i in enumerate(starts):  # out of each other's way
         away = (0.0, 0.0, AWAY_M * (1 + number))
         pybullet.resetBasePositionAndOrientation(i, away, (0, 0, 0, 1), world.client)
     order = sorted(starts, key=lambda i: starts[i][1][6])
-    touching = {i: _put_down(world, i, *starts[i], reach_m) for i in order}
+    args = reach_m, depth_of
+    touching = {i: _put_down(world, i, *starts[i], *args) for i in order}
     return {i: (body, touching[i]) for i, (body, _) in starts.items()}
 
 
 def _put_down(
-    world: World, i: int, body: Body, T_world_body: Array, reach_m: float
+    world: World,
+    i: int,
+    body: Body,
+    T_world_body: Array,
+    reach_m: float,
+    depth_of: Callable[[World, int], float],
 ) -> Array:
     """Return the pose at which a body touches what is below, shape (7,).
 
@@ -44,19 +62,17 @@ def _put_down(
     """
     n_steps = round(reach_m / STEP_M)
     args = world, i, body, T_world_body
-    free = next((n for n in range(n_steps + 1) if _is_free(n, *args)), None)
+
+    def is_free(n: int) -> bool:
+        _moved(n, *args)
+        return depth_of(world, i) <= TOUCH_M
+
+    free = next((n for n in range(n_steps + 1) if is_free(n)), None)
     if free is None:
         return _moved(0, *args)
-    while free > -n_steps and _is_free(free - 1, *args):
+    while free > -n_steps and is_free(free - 1):
         free -= 1
     return _moved(free, *args)
-
-
-def _is_free(n: int, world: World, i: int, body: Body, T_world_body: Array) -> bool:
-    """Return whether a body `n` steps above its pose overlaps with nothing."""
-    _moved(n, world, i, body, T_world_body)
-    pybullet.performCollisionDetection(world.client)
-    return deepest_overlap(world, i)[0] <= TOUCH_M
 
 
 def _moved(n: int, world: World, i: int, body: Body, T_world_body: Array) -> Array:

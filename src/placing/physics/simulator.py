@@ -66,8 +66,8 @@ def new_world(step_rate_hz: float, friction: float, margin_m: float) -> Iterator
         pybullet.disconnect(client)
 
 
-def add_fixed(world: World, name: str, piece: Piece) -> None:
-    """Put a piece that does not move into the world."""
+def add_fixed(world: World, name: str, piece: Piece) -> int:
+    """Return the number of a piece that does not move and is put into the world."""
     options = {}
     if not piece.is_convex:
         options = {
@@ -90,6 +90,7 @@ def add_fixed(world: World, name: str, piece: Piece) -> None:
         physicsClientId=world.client,
     )
     world.names[i] = name
+    return i
 
 
 def add_body(world: World, name: str, body: Body, T_world_body: Array) -> int:

@@ -68,7 +68,7 @@ def forward(tree: Tree, q: Array, out: Array) -> None:
     base[0, 0], base[0, 1], base[1, 0], base[1, 1], base[2, 2] = c, -s, s, c, 1.0
     base[0, 3], base[1, 3] = q[0], q[1]
     for i in range(1, len(out)):
-        _hang(out[i - 1], tree.T_parent_joint[i], out[i])
+        hang(out[i - 1], tree.T_parent_joint[i], out[i])
         if tree.is_turning[i]:
             _turn(out[i], tree.axis[i], q[i + 2])
         else:
@@ -76,7 +76,7 @@ def forward(tree: Tree, q: Array, out: Array) -> None:
 
 
 @inner
-def _hang(T_a_b: Array, T_b_c: Array, out: Array) -> None:
+def hang(T_a_b: Array, T_b_c: Array, out: Array) -> None:
     """Write `T_a_c` into `out`, all (3, 4)."""
     for r in range(3):
         x, y, z = T_a_b[r, 0], T_a_b[r, 1], T_a_b[r, 2]

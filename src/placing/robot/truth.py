@@ -21,9 +21,9 @@ from placing.physics.putting_down import put_down
 from placing.physics.settling import SettleConfig, settle
 from placing.physics.simulator import (
     MAX_STEEPNESS,
+    World,
     add_body,
     add_fixed,
-    near_pairs,
     new_world,
     overlaps,
 )
@@ -31,6 +31,16 @@ from placing.rigid import Array
 from placing.robot.checker import CheckerConfig, levers
 from placing.robot.kernels import Spheres, Tree, n_steps
 from placing.robot.model import RobotModel, tool_pose
+from placing.robot.nearby import (
+    NOTHING_HELD,
+    Held,
+    near,
+    near_thing,
+    no_things,
+    scratch_of,
+    solids_of,
+    with_thing,
+)
 from placing.robot.tree import fixed_values, gripper_values
 
 AWAY_M = 100.0
@@ -63,6 +73,9 @@ class Truth:
         self._lever_m = levers(model)
         frames = zip(model.links, model.tree.link_frame.tolist(), strict=True)
         self._base = {link for link, frame in frames if frame == 0}
+        self._solids = solids_of(model.spheres, model.self_pairs)
+        self._scratch = scratch_of(self._solids, len(model.tree.axis))
+        self._things, self._bodies = no_things(), []
 
     def __enter__(self) -> "Truth":
         """Make the world."""
@@ -71,7 +84,7 @@ class Truth:
         self._world = self._stack.enter_context(world)
         for name, pieces in self._pieces.items():
             for piece in pieces:
-                add_fixed(self._world, name, piece)
+                self._know(add_fixed(self._world, name, piece), (piece,))
         with silence():
             self._robot = pybullet.loadURDF(
                 str(self._model.settings.urdf),
@@ -84,6 +97,9 @@ class Truth:
             joint = pybullet.getJointInfo(self._robot, i, self._client)
             self._joints[joint[1].decode()] = i
             self._links[i] = joint[12].decode()
+        number = {name: i for i, name in self._links.items()}
+        names = self._model.links
+        self._solid = [number[names[link]] for link in self._solids.link.tolist()]
         self._hold_still()
         self._allow()
         return self
@@ -132,6 +148,13 @@ class Truth:
                         self._client,
                     )
 
+    def _know(self, i: int, pieces: tuple[Piece, ...]) -> None:
+        """Look at a body from now on; its pieces are in the frame the simulator has."""
+        self._things = with_thing(self._things, pieces, self._settling.margin_m)
+        self._bodies.append(i)
+        n_links, n_things = len(self._solids.link), len(self._bodies)
+        self._near = np.zeros((n_links + 1, n_things + n_links), np.bool_)
+
     def put(self, object_id: str, body: Body, T_world_object: Array) -> None:
         """Let an object stand at a pose, or move it there."""
         if object_id not in self._standing:
@@ -140,12 +163,14 @@ class Truth:
                 i = add_body(self._world, object_id, body, T_world_object)
                 # The body is kept so that no other one gets its number.
                 self._made[key] = (i, body)
+                self._know(i, body.pieces)
             self._standing[object_id] = (self._made[key][0], body, T_world_object)
         self._move(object_id, T_world_object)
 
     def remove(self, object_id: str) -> None:
         """Take an object out of the scene; it waits for the next time far below."""
         i, _, _ = self._standing.pop(object_id)
+        self._things.is_here[self._bodies.index(i)] = False
         away = (APART_M * i, 0.0, -AWAY_M)
         pybullet.resetBasePositionAndOrientation(i, away, (0, 0, 0, 1), self._client)
 
@@ -166,16 +191,10 @@ class Truth:
         there is given. Put down or lifted (`touching`) it may overlap with things a
         little.
         """
-        self._set(np.asarray(q, float))
-        if held_id is not None and T_tool_object is not None:
-            T_world_tool = tool_pose(self._model, q)
-            self._move(held_id, rigid.compose(T_world_tool, T_tool_object))
-        pybullet.performCollisionDetection(self._client)
-        found = self._robot_hits(held_id)
-        if held_id is not None and T_tool_object is not None:
-            depth_m = self._config.touch_depth_m if touching else 0.0
-            found |= self._held_hits(held_id, depth_m)
-        return tuple(sorted(found))
+        q, held = np.asarray(q, float), self._held(held_id, T_tool_object)
+        found = self._hits(q, held, held_id, T_tool_object, touching)
+        self._carry(q, held_id, T_tool_object)
+        return found
 
     def check_path(
         self,
@@ -187,10 +206,53 @@ class Truth:
         """Return the first hit on the way along a path (t, 4 + a); empty if none."""
         spheres, lever_m = self._moving_points(held_id, T_tool_object)
         args = self._model.tree, spheres, lever_m, self._config.exact_step_m
+        held, q, hit = self._held(held_id, T_tool_object), path[0], ""
         for n, q in steps(path, *args):
-            if hit := self.hits(q, held_id, T_tool_object, touching):
-                return f"{hit[0]} after row {n}"
-        return ""
+            found = self._hits(q, held, held_id, T_tool_object, touching)
+            if found:
+                hit = f"{found[0]} after row {n}"
+                break
+            held = held._replace(is_known=True)
+        self._carry(q, held_id, T_tool_object)
+        return hit
+
+    def _held(self, held_id: str | None, T_tool_object: Array | None) -> Held:
+        """Return what moves with the tool."""
+        if held_id is None or T_tool_object is None:
+            return NOTHING_HELD
+        i, body, _ = self._standing[held_id]
+        fixed = np.eye(4)
+        fixed[:3] = self._model.tree.T_frame_tool
+        T = fixed @ rigid.homogeneous(_centred(T_tool_object, body))
+        return Held(self._bodies.index(i), np.ascontiguousarray(T[:3]), False)
+
+    def _hits(
+        self,
+        q: Array,
+        held: Held,
+        held_id: str | None,
+        T_tool_object: Array | None,
+        touching: bool,
+    ) -> tuple[str, ...]:
+        """Return what `hits` does; what is held is where it was if nothing is near."""
+        args = self._model.tree, q, self._solids, self._things, held
+        if not near(*args, self._scratch, self._near):
+            return ()
+        self._set(q)
+        self._carry(q, held_id, T_tool_object)
+        found = self._robot_hits(held_id)
+        if held_id is not None and T_tool_object is not None:
+            depth_m = self._config.touch_depth_m if touching else 0.0
+            found |= self._held_hits(held_id, depth_m)
+        return tuple(sorted(found))
+
+    def _carry(
+        self, q: Array, held_id: str | None, T_tool_object: Array | None
+    ) -> None:
+        """Move what is held, if anything, to where the tool has it."""
+        if held_id is not None and T_tool_object is not None:
+            T_world_tool = tool_pose(self._model, q)
+            self._move(held_id, rigid.compose(T_world_tool, T_tool_object))
 
     def _moving_points(
         self, held_id: str | None, T_tool_object: Array | None
@@ -213,13 +275,29 @@ class Truth:
 
     def touching_pose(self, object_id: str, reach_m: float) -> Array:
         """Move an object up or down until it touches; return where it is, (7,)."""
-        away = np.zeros(4 + self._model.n_arm)
-        away[:2] = AWAY_M
-        self._set(away)
         i, body, T_world_object = self._standing[object_id]
-        T = put_down(self._world, {i: (body, T_world_object)}, reach_m)[i][1]
-        self._standing[object_id] = (i, body, T)
+        start = {i: (body, T_world_object)}
+        T = put_down(self._world, start, reach_m, self._depth_of)[i][1]
+        self._move(object_id, T)
         return T
+
+    def _depth_of(self, world: World, i: int) -> float:
+        """Return how deep a body of the simulator overlaps with things [m]."""
+        at, (x, y, z, w) = pybullet.getBasePositionAndOrientation(i, world.client)
+        thing, out = self._bodies.index(i), self._near[-1]
+        T_world_thing = rigid.homogeneous(np.array([w, x, y, z, *at]))
+        self._things.T_world_thing[thing] = T_world_thing[:3]
+        near_thing(self._things, thing, out)
+        depths = [
+            o.depth_m
+            for other in self._others()
+            for o in overlaps(world, i, (-1, other, -1))
+        ]
+        return max(depths, default=0.0)
+
+    def _others(self) -> list[int]:
+        """Return the bodies that what is held may overlap with."""
+        return [self._bodies[k] for k in np.flatnonzero(self._near[-1]).tolist()]
 
     def let_go(self, object_id: str, above_m: float, reach_m: float) -> str:
         """Return why an object does not stay that is let go above where it stands.
@@ -257,14 +335,17 @@ class Truth:
         """Move an object."""
         i, body, _ = self._standing[object_id]
         self._standing[object_id] = (i, body, T_world_object)
-        w, x, y, z = T_world_object[:4]
-        centre = rigid.apply(T_world_object, body.mass_centre_m[None])[0]
+        T_world_mass = _centred(T_world_object, body)
+        thing = self._bodies.index(i)
+        self._things.T_world_thing[thing] = rigid.homogeneous(T_world_mass)[:3]
+        self._things.is_here[thing] = True
+        w, x, y, z, *centre = T_world_mass.tolist()
         pybullet.resetBasePositionAndOrientation(i, centre, (x, y, z, w), self._client)
 
     def _robot_hits(self, held_id: str | None) -> set[str]:
         """Return what the robot overlaps with, what its gripper holds if too deep."""
         found = set()
-        for pair in near_pairs(self._world, self._robot):
+        for pair in self._near_pairs():
             link, other = self._links[pair[0]], pair[1]
             is_self = other == self._robot
             thing = self._links[pair[2]] if is_self else self._world.names[other]
@@ -277,13 +358,25 @@ class Truth:
                 found.add(hit)
         return found
 
+    def _near_pairs(self) -> list[tuple[int, int, int]]:
+        """Return which link may overlap with which body, and with which link of it."""
+        n_things, pairs = len(self._bodies), []
+        for row, column in np.argwhere(self._near[:-1]).tolist():
+            link = self._solid[row]
+            if column < n_things:
+                pairs.append((link, self._bodies[column], -1))
+            else:
+                ends = sorted((link, self._solid[column - n_things]))
+                pairs.append((ends[0], self._robot, ends[1]))
+        return pairs
+
     def _held_hits(self, held_id: str, depth_m: float) -> set[str]:
         """Return what a held object overlaps with by at least `depth_m`."""
         i = self._standing[held_id][0]
         return {
-            f"{held_id}/{self._world.names[pair[1]]}"
-            for pair in near_pairs(self._world, i)
-            if pair[1] != self._robot and self._is_overlap(i, pair, depth_m)
+            f"{held_id}/{self._world.names[other]}"
+            for other in self._others()
+            if self._is_overlap(i, (-1, other, -1), depth_m)
         }
 
     def _is_overlap(
@@ -329,6 +422,12 @@ def steps(
         n_moves = n_steps(*args)
         for k in range(1, n_moves + 1):
             yield n, q0 + k / n_moves * (q1 - q0)
+
+
+def _centred(T_a_object: Array, body: Body) -> Array:
+    """Return the pose of the mass centre of a body, turned as the body is, (7,)."""
+    centre = rigid.apply(T_a_object, body.mass_centre_m[None])[0]
+    return np.concatenate([T_a_object[:4], centre])
 
 
 def _near(
