@@ -15,6 +15,7 @@ import pandas as pd
 import tyro
 from numpy.typing import NDArray
 from shapely import Polygon, contains_xy
+from simulated import Simulated
 from tqdm import tqdm
 
 from placing import rigid
@@ -65,7 +66,9 @@ def main(
         field = distance_field(scanned(layout, scan).points, config)
         checker = SceneChecker(model, field, config)
         configurations = anywhere(generator(0, "checker", name), layout, model, n)
-        with Truth(model, fixed_of(layout, settling.margin_m), config, settling) as t:
+        with Simulated(
+            model, fixed_of(layout, settling.margin_m), config, settling
+        ) as t:
             rows.append({"room": name, **compare(checker, t, configurations, n_exact)})
             some = configurations[:n_held]
             rows.append({"room": name, **with_object(checker, t, layout, some)})

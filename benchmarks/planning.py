@@ -24,6 +24,7 @@ from ompl import geometric as og
 from ompl import util as ou
 from pybullet_planning import plan_joint_motion
 from pybullet_planning.utils import CLIENTS
+from simulated import Simulated
 from tqdm import tqdm
 
 from placing.physics.arrangements import fixed_of
@@ -72,7 +73,9 @@ def main(
         checker = SceneChecker(model, field, config)
         states = anywhere(rng, layout, model, 5000)
         still = around_one_base(rng, checker, states)
-        with Truth(model, fixed_of(layout, settling.margin_m), config, settling) as t:
+        with Simulated(
+            model, fixed_of(layout, settling.margin_m), config, settling
+        ) as t:
             checks += compare_checks(name, checker, t, states[:n_states], still)
             problems = pairs(checker, t, still, n_problems)
             queries += compare_queries(checker, t, problems, n_slow)
