@@ -2,9 +2,15 @@
 
 import numpy as np
 import pytest
+from scipy import ndimage
 from scipy.spatial import cKDTree
 
-from placing.robot.distance_field import FieldConfig, distance_field
+from placing.robot.distance_field import (
+    FieldConfig,
+    distance_field,
+    distances,
+    nearest_cells,
+)
 
 CONFIG = FieldConfig(0.025, 0.045, 2.0, 0.025, 0.1)
 
@@ -85,3 +91,45 @@ def test_a_rug_is_ground_and_no_obstacle(field):
 def test_a_bare_floor_has_a_field():
     field = distance_field(FLOOR, CONFIG)
     assert lookup(field, 1.5, 1.0, 1.0) == pytest.approx(1.0, abs=0.06)
+
+
+def test_the_nearest_cells_are_those_of_a_plain_transform():
+    rng = np.random.default_rng(1)
+    shape = (7, 9, 8)
+    for n in (1, 5, 40, 200):
+        occupied = np.sort(rng.choice(np.prod(shape), n, replace=False))
+        is_free = np.ones(shape, bool)
+        is_free.ravel()[occupied] = False
+        found = ndimage.distance_transform_edt(
+            is_free, return_distances=False, return_indices=True
+        )
+        named = occupied[nearest_cells(occupied, shape)]
+        assert np.array_equal(named, np.ravel_multi_index(tuple(found), shape))
+
+
+def test_what_is_skipped_is_no_nearer():
+    rng = np.random.default_rng(2)
+    shape, n_points = (9, 8, 7), 60
+    cells = rng.integers(0, shape, (n_points, 3))
+    points = cells + rng.uniform(-0.5, 0.5, cells.shape)
+    is_scanned = np.pad(np.ones((7, 6), bool), 1)
+    found = distances(cells, points, np.zeros(3), is_scanned, shape[2])
+    outside = ndimage.distance_transform_edt(is_scanned)
+    is_in = (cells == cells[:, None]).all(-1)  # (p, p)
+    named = is_in[named_cells(cells, shape)].reshape(*shape, n_points)
+    for cell in np.ndindex(shape):
+        around = tuple(slice(max(c - 1, 0), c + 2) for c in cell)
+        near = points[named[around].any((0, 1, 2))]
+        least = np.sum((near - cell) ** 2, axis=1).min()
+        expected = min(np.sqrt(least), outside[cell[:2]])
+        assert found[cell] == pytest.approx(expected, rel=1e-6)
+
+
+def named_cells(cells, shape):
+    """Return for each cell of a grid the number of a point in the nearest occupied."""
+    number = np.full(shape, -1)
+    number[tuple(cells.T)] = np.arange(len(cells))
+    nearest = ndimage.distance_transform_edt(
+        number < 0, return_distances=False, return_indices=True
+    )
+    return number[tuple(nearest)].ravel()

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from placing.rigid import Array
+from placing.robot.kernels import inner
 
 Mask = NDArray[np.bool_]
 Floats = NDArray[np.float32]
@@ -63,7 +64,7 @@ def distance_field(points_m: NDArray, config: FieldConfig) -> DistanceField:
     ground = _ground(cells, points[:, 2], is_high, shape[:2], config)
     is_scanned = _scanned(cells, shape[:2], config)
     scaled, start = points[is_high] / config.cell_m, origin / config.cell_m
-    distance = _distances(cells[is_high], scaled, start, is_scanned, shape[2])
+    distance = distances(cells[is_high], scaled, start, is_scanned, shape[2])
     distance *= np.float32(config.cell_m)
     air = _open_air(distance > config.hole_m, is_scanned, config)
     distance[~air & (distance > config.hole_m)] = 0.0
@@ -111,7 +112,7 @@ def _scanned(
     return closed[n:-n, n:-n]
 
 
-def _distances(
+def distances(
     cells: NDArray[np.int64], points: Array, origin: Array, is_scanned: Mask, nz: int
 ) -> Floats:
     """Return the distance of each cell to points and to the outside, (x, y, z) [cells].
@@ -126,39 +127,127 @@ def _distances(
     flat = np.asarray(np.ravel_multi_index(tuple(cells.T), shape))
     order = np.argsort(flat, kind="stable")
     occupied, first = np.unique(flat[order], return_index=True)
+    points = points[order] - origin
+    boxes = np.minimum.reduceat(points, first), np.maximum.reduceat(points, first)
+    first = np.append(first, len(flat))
+    return _refine(nearest_cells(occupied, shape), boxes, first, points, outside)
+
+
+def nearest_cells(
+    occupied: NDArray[np.int64], shape: tuple[int, int, int]
+) -> NDArray[np.int32]:
+    """Return the number of the occupied cell (o,) nearest to each cell, (x, y, z)."""
+    at = np.stack(np.unravel_index(occupied, shape), axis=-1)
     number = np.full(shape, -1, np.int32)
     number.ravel()[occupied] = np.arange(len(occupied))
-    nearest = ndimage.distance_transform_edt(
-        number < 0, return_distances=False, return_indices=True
-    )
-    number = number[tuple(nearest)]
-    first = np.append(first, len(flat))
-    return _refine(number, first, points[order] - origin, outside)
+    for axes in ((1, 2, 0), (0, 2, 1), (0, 1, 2)):
+        _spread(number.transpose(axes), np.ascontiguousarray(at[:, axes]))
+    return number
+
+
+@njit(cache=True)
+def _spread(number: NDArray[np.int32], at: NDArray[np.int64]) -> None:
+    """Name in each cell the nearest of what its line along the last axis names.
+
+    A negative number names nothing; of cells as near the first on the line is named.
+    """
+    nu, nv, n = number.shape
+    place, name, square = np.empty((3, n), np.int64)
+    for u in range(nu):
+        for v in range(nv):
+            m = 0
+            for k in range(n):
+                cell = number[u, v, k]
+                if cell < 0:
+                    continue
+                beside = (at[cell, 0] - u) ** 2 + (at[cell, 1] - v) ** 2
+                while m > 1 and _is_never_nearest(place, square, m - 1, k, beside):
+                    m -= 1
+                place[m], name[m], square[m] = k, cell, beside
+                m += 1
+            if m > 0:
+                _name(number[u, v], place[:m], name, square)
+
+
+@inner
+def _is_never_nearest(
+    place: NDArray, square: NDArray, m: int, k: int, beside: int
+) -> bool:
+    """Return whether the one before m or one at k is nearer than m all along a line."""
+    before, after = place[m] - place[m - 1], k - place[m]
+    both = before + after
+    least = after * square[m - 1] + before * beside + before * after * both
+    return both * square[m] > least
+
+
+@njit(cache=True)
+def _name(
+    line: NDArray[np.int32], place: NDArray, name: NDArray, square: NDArray
+) -> None:
+    """Write the name of the nearest into the cells of a line."""
+    m = 0
+    for k in range(len(line)):
+        while m + 1 < len(place) and (
+            square[m] + (place[m] - k) ** 2 > square[m + 1] + (place[m + 1] - k) ** 2
+        ):
+            m += 1
+        line[k] = name[m]
 
 
 @njit(cache=True)
 def _refine(
-    number: NDArray[np.int32], first: NDArray, points: Array, outside: Floats
+    number: NDArray[np.int32],
+    boxes: tuple[Array, Array],
+    first: NDArray,
+    points: Array,
+    outside: Floats,
 ) -> Floats:
-    """Return the distances to the points of the cells named by and around each."""
-    distance = np.empty(number.shape, np.float32)
+    """Return the distances to the points of the cells named by and around each.
+
+    The points of a cell are looked at if the box around them is near enough; boxes
+    have least and greatest corners, (o, 3) each.
+    """
+    distance = np.zeros(number.shape, np.float32)
     nx, ny, nz = number.shape
     for i in range(nx):
         for j in range(ny):
-            for k in range(nz):
-                least, last = outside[i, j] ** 2, -1
+            for k in range(nz if outside[i, j] > 0 else 0):
+                own, least = number[i, j, k], outside[i, j] ** 2
+                least = _nearer(own, boxes, first, points, (i, j, k), least)
+                last = own
                 for u in range(max(i - 1, 0), min(i + 2, nx)):
                     for v in range(max(j - 1, 0), min(j + 2, ny)):
                         for w in range(max(k - 1, 0), min(k + 2, nz)):
                             cell = number[u, v, w]
-                            if cell != last:
+                            if cell not in (own, last):
                                 last = cell
-                                for n in range(first[cell], first[cell + 1]):
-                                    x, y, z = points[n]
-                                    square = (x - i) ** 2 + (y - j) ** 2 + (z - k) ** 2
-                                    least = min(least, square)
+                                spot = (i, j, k)
+                                least = _nearer(cell, boxes, first, points, spot, least)
                 distance[i, j, k] = np.sqrt(least)
     return distance
+
+
+@inner
+def _nearer(
+    cell: int,
+    boxes: tuple[Array, Array],
+    first: NDArray,
+    points: Array,
+    spot: tuple[int, int, int],
+    least: float,
+) -> float:
+    """Return the square of the distance to a cell's points, or the least if less."""
+    low, high = boxes
+    i, j, k = spot
+    x = max(low[cell, 0] - i, i - high[cell, 0], 0.0)
+    y = max(low[cell, 1] - j, j - high[cell, 1], 0.0)
+    z = max(low[cell, 2] - k, k - high[cell, 2], 0.0)
+    if x**2 + y**2 + z**2 >= least:
+        return least
+    for n in range(first[cell], first[cell + 1]):
+        x, y, z = points[n, 0] - i, points[n, 1] - j, points[n, 2] - k
+        least = min(least, x**2 + y**2 + z**2)
+    return least
 
 
 def _open_air(is_wide: Mask, is_scanned: Mask, config: FieldConfig) -> Mask:
