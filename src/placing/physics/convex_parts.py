@@ -1,6 +1,7 @@
 """Few convex parts that cover a solid, found by cutting it along planes."""
 
 from dataclasses import dataclass
+from heapq import heappop, heappush
 
 import numpy as np
 import trimesh
@@ -21,6 +22,8 @@ MAX_CUTS = 10
 """Places along each axis where a cut is tried."""
 FLAT_M = 1e-4
 """Guards against slivers that a cut leaves along a face."""
+ROUNDING = 1e-6
+"""Guards bounds on volumes against round-off, as a share of the whole."""
 
 
 @dataclass(frozen=True)
@@ -58,24 +61,57 @@ def convex_parts(mesh: trimesh.Trimesh) -> list[Array]:
 
 
 def best_cut(part: Manifold, least_m3: float) -> Cut:
-    """Return the cut along an axis that frees the most; none frees less than asked."""
+    """Return the cut along an axis that frees the most; none frees less than asked.
+
+    Of cuts that free the same the first is meant, in the order of axes and places.
+    """
     mesh = part.to_mesh64()
     corners = np.array(mesh.vert_properties[:, :3])
     triangles = np.asarray(mesh.tri_verts)
     ends = np.unique(
         np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)), axis=0
     )
+    places = [places_to_cut(corners @ axis) for axis in AXES]
     volume = hull_volume(corners)
-    best = Cut(0.0, AXES[2], 0.0)
-    if volume - part.volume() < least_m3:
-        return best
-    for axis in AXES:
-        for place in places_to_cut(corners @ axis):
-            halves = cut_corners(corners, ends, axis, place)
-            gain = volume - sum(hull_volume(half) for half in halves)
-            if gain > best.gain_m3:
-                best = Cut(gain, axis, float(place))
-    return best
+    gains = {}
+    if volume - part.volume() >= least_m3:
+        gains = gains_of(corners, ends, places, volume, least_m3)
+    best = max(sorted(gains), key=lambda cut: gains[cut], default=None)
+    if best is None or gains[best] < least_m3:
+        return Cut(0.0, AXES[2], 0.0)
+    axis, place = best
+    return Cut(gains[best], AXES[axis], float(places[axis][place]))
+
+
+def gains_of(
+    corners_m: Array,
+    edges: NDArray[np.integer],
+    places_m: list[Array],
+    volume_m3: float,
+    least_m3: float,
+) -> dict[tuple[int, int], float]:
+    """Return what cuts free [m3] by axis and place, but for those that free too little.
+
+    What is above a place holds all that is above a higher one, and so does its hull:
+    between two places the hulls of both sides are bounded by those already known.
+    """
+    gains, most = {}, least_m3 - ROUNDING * volume_m3
+    # Least volume of both hulls, axis, places around, volumes below and above.
+    gaps = [(0.0, i, -1, len(places), 0.0, 0.0) for i, places in enumerate(places_m)]
+    while gaps and volume_m3 - gaps[0][0] >= most:
+        _, axis, first, last, below, above = heappop(gaps)
+        middle = (first + last) // 2
+        if middle == first:
+            continue
+        sides = cut_corners(corners_m, edges, AXES[axis], places_m[axis][middle])
+        upper, lower = hull_volume(sides[0]), below
+        if volume_m3 - (upper + below) >= most:
+            lower = hull_volume(sides[1])
+            gains[axis, middle] = volume_m3 - (upper + lower)
+            most = max(most, gains[axis, middle] - ROUNDING * volume_m3)
+        heappush(gaps, (upper + below, axis, first, middle, below, upper))
+        heappush(gaps, (above + lower, axis, middle, last, lower, above))
+    return gains
 
 
 def cut_corners(
