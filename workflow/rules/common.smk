@@ -23,6 +23,7 @@ os.environ.setdefault("NPY_DISABLE_CPU_FEATURES", "X86_V4 AVX512_ICL AVX512_SPR"
 os.environ.setdefault("NUMBA_CACHE_DIR", str(Path(".cache/numba").absolute()))
 os.environ.setdefault("PYTHONHASHSEED", "0")
 os.environ.setdefault("MPLBACKEND", "Agg")
+os.environ.setdefault("ARROW_DEFAULT_MEMORY_POOL", "system")
 
 SCANS = "scans"
 """The data set that is arranged with what all folds of `rooms` teach."""
