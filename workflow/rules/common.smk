@@ -24,6 +24,7 @@ os.environ.setdefault("NUMBA_CACHE_DIR", str(Path(".cache/numba").absolute()))
 os.environ.setdefault("PYTHONHASHSEED", "0")
 os.environ.setdefault("MPLBACKEND", "Agg")
 os.environ.setdefault("ARROW_DEFAULT_MEMORY_POOL", "system")
+os.environ.setdefault("MALLOC_MMAP_THRESHOLD_", "4194304")
 
 SCANS = "scans"
 """The data set that is arranged with what all folds of `rooms` teach."""

@@ -65,8 +65,9 @@ def main(
     """
     read_layout = layout_reader(dataset, *layouts)
     body, sheet = read_both(robot, grasps)
-    model, every = load_robot(body), [read_options(path) for path in options]
-    made = Planned(dataset, pd.concat(every), min_distance_m, robot_placing)
+    model, every = load_robot(body), pd.concat(map(read_options, options))
+    made = Planned(dataset, every, min_distance_m, robot_placing)
+    del every  # it is kept by question
     for name in tqdm(sorted(robot_scenes), unit="scene", disable=None):
         seen = scenes / f"{name}.json", clouds / f"{name}.ply"
         add_scene(made, *seen, read_layout(name), (model, sheet, settings, seed))

@@ -305,6 +305,10 @@ class Asking:
         return motion.T_world_object
 
 
+N_TOGETHER = 128
+"""Placements compared together with all others; only speed and memory depend on it."""
+
+
 class Exclusion:
     """Tells of two placements that cannot both be, without asking the robot."""
 
@@ -324,8 +328,12 @@ class Exclusion:
         boxes[:, 2] += boxes[:, 5] / 2
         _, kind = np.unique([item.category for item in items], return_inverse=True)
         at = np.array([c.resting_point for c in every]).reshape(-1, 3)
-        is_near = cdist(at, at) < standing.min_distance_m
-        self._excludes = overlaps(boxes, boxes) | is_near & (kind[:, None] == kind)
+        self._excludes = np.empty((len(every), len(every)), np.bool_)
+        for first in range(0, len(every), N_TOGETHER):
+            some = slice(first, first + N_TOGETHER)
+            is_near = cdist(at[some], at) < standing.min_distance_m
+            is_twin = is_near & (kind[some, None] == kind)
+            self._excludes[some] = overlaps(boxes[some], boxes) | is_twin
 
     def __call__(self, one: Candidate, other: Candidate) -> bool:
         """Return whether two placements cannot both be."""

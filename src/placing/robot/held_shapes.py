@@ -23,6 +23,9 @@ SLACK_M = 0.004
 LOOKS = 5
 """Points of a cube, along each edge, that are looked for in the object."""
 
+N_TOGETHER = 64
+"""Cubes looked at together; only speed and memory depend on it."""
+
 
 def cells_of(body: Body) -> tuple[Array, float]:
     """Return the centres (h, 3) of the cubes a body reaches into, and their radius."""
@@ -49,10 +52,11 @@ def _reached(centres: Array, cell: Array, planes: Array) -> NDArray[np.bool_]:
     outside = centres @ planes[:, :3].T + planes[:, 3]  # (h, p)
     is_reached = np.all(outside <= slack, axis=1)
     near = np.all(outside <= np.linalg.norm(cell) / 2 + slack, axis=1)
-    unsure = near & ~is_reached
-    points = (centres[unsure, None] + looks).reshape(-1, 3)
-    inside = np.all(points @ planes[:, :3].T + planes[:, 3] <= slack, axis=1)
-    is_reached[unsure] = inside.reshape(-1, len(looks)).any(1)
+    unsure = np.flatnonzero(near & ~is_reached)
+    for some in np.split(unsure, range(N_TOGETHER, len(unsure), N_TOGETHER)):
+        points = (centres[some, None] + looks).reshape(-1, 3)
+        inside = np.all(points @ planes[:, :3].T + planes[:, 3] <= slack, axis=1)
+        is_reached[some] = inside.reshape(-1, len(looks)).any(1)
     return is_reached
 
 

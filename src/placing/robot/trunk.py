@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from placing.rigid import Array
 from placing.robot.kernels import Trunk, least_distances
 
-CELL_M = 0.03
+CELL_M = 0.04
 """Width of the cells; only speed and memory depend on it."""
 AROUND_M = 0.3
 """Cells reach so far around the trunk; only speed and memory depend on it."""
