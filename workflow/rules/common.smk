@@ -25,6 +25,7 @@ os.environ.setdefault("PYTHONHASHSEED", "0")
 os.environ.setdefault("MPLBACKEND", "Agg")
 os.environ.setdefault("ARROW_DEFAULT_MEMORY_POOL", "system")
 os.environ.setdefault("MALLOC_MMAP_THRESHOLD_", "4194304")
+os.environ.setdefault("MALLOC_TRIM_THRESHOLD_", "33554432")
 
 SCANS = "scans"
 """The data set that is arranged with what all folds of `rooms` teach."""
