@@ -14,6 +14,30 @@ Array = NDArray[np.float64]
 class Simulated(Truth):
     """The exact check without a look at spheres and boxes before."""
 
+    def __enter__(self) -> "Simulated":
+        """Make the world, and let links overlap that may."""
+        super().__enter__()
+        self._allow()
+        return self
+
+    def _allow(self) -> None:
+        """Let links overlap that do so by design or never move against each other."""
+        number = {name: i for i, name in self._links.items()}
+        names = self._model.links
+        checked = {tuple(pair) for pair in self._model.self_pairs.tolist()}
+        solid = sorted({hull.link for hull in self._model.hulls}, key=names.index)
+        for i, one in enumerate(solid):
+            for other in solid[i + 1 :]:
+                if (names.index(one), names.index(other)) not in checked:
+                    pybullet.setCollisionFilterPair(
+                        self._robot,
+                        self._robot,
+                        number[one],
+                        number[other],
+                        0,
+                        self._client,
+                    )
+
     def _hits(
         self,
         q: Array,

@@ -1,8 +1,9 @@
 """The exact check: the true meshes of robot, furniture and objects in a simulator.
 
 What was planned from a cloud is verified here, against what is really there, in finer
-steps. A collision is an overlap of two shapes; nothing is simulated but the last thing
-asked: whether an object that is let go stays. Letters: t configurations, a arm joints.
+steps. A collision is an overlap of two shapes; those that spheres and boxes around them
+keep apart are not compared. Nothing is simulated but the last thing asked: whether an
+object that is let go stays. Letters: t configurations, a arm joints.
 """
 
 import math
@@ -101,7 +102,6 @@ class Truth:
         names = self._model.links
         self._solid = [number[names[link]] for link in self._solids.link.tolist()]
         self._hold_still()
-        self._allow()
         return self
 
     def __exit__(self, *error: object) -> None:
@@ -129,24 +129,6 @@ class Truth:
             pybullet.resetJointState(
                 self._robot, self._joints[name], value, physicsClientId=self._client
             )
-
-    def _allow(self) -> None:
-        """Let links overlap that do so by design or never move against each other."""
-        number = {name: i for i, name in self._links.items()}
-        names = self._model.links
-        checked = {tuple(pair) for pair in self._model.self_pairs.tolist()}
-        solid = sorted({hull.link for hull in self._model.hulls}, key=names.index)
-        for i, one in enumerate(solid):
-            for other in solid[i + 1 :]:
-                if (names.index(one), names.index(other)) not in checked:
-                    pybullet.setCollisionFilterPair(
-                        self._robot,
-                        self._robot,
-                        number[one],
-                        number[other],
-                        0,
-                        self._client,
-                    )
 
     def _know(self, i: int, pieces: tuple[Piece, ...]) -> None:
         """Look at a body from now on; its pieces are in the frame the simulator has."""
