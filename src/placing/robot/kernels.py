@@ -25,6 +25,8 @@ and without counting who uses an array; calls and counts take most of the time e
 # ASSUME: what moves fastest in a third of a motion moves no more above its chords.
 CURVED = 1.2
 """Way along an arc, and its fastest part, against the chords of its thirds."""
+ROUNDED = 1 + 1e-9
+"""Guards a bound against round-off."""
 
 
 class Tree(NamedTuple):
@@ -344,28 +346,47 @@ def n_steps(tree, frame, at_m, lever_m, q0, q1, step_m):
         return most
     n, farthest, q = (most + 2) // 3, 0.0, np.empty(len(q0))
     before, now = np.empty((len(tree.axis), 3, 4)), np.empty((len(tree.axis), 3, 4))
+    radius_m, is_far = np.zeros(len(before)), np.empty(len(before), np.bool_)
+    for i in range(len(at_m)):
+        x, y, z = at_m[i, 0], at_m[i, 1], at_m[i, 2]
+        radius_m[frame[i]] = max(radius_m[frame[i]], np.sqrt(x * x + y * y + z * z))
     forward(tree, q0, before)
     for k in range(1, n + 1):
         _blend(q0, q1, k / n, q)
         forward(tree, q, now)
         before -= now
-        farthest = max(farthest, _farthest(before, frame, at_m))
+        _find_far(before, radius_m, np.sqrt(farthest), is_far)
+        farthest = max(farthest, _farthest(before, frame, at_m, is_far))
         before, now = now, before
     return min(most, max(1, int(np.ceil(CURVED * n * np.sqrt(farthest) / step_m))))
 
 
 @inner
-def _farthest(way, frame, at_m):
-    """Return the largest square of how far points (s, 3) went, by frames' way."""
-    farthest, last, is_still = 0.0, -1, False
+def _find_far(way, radius_m, least_m, is_far):
+    """Write of which frames a point may have gone farther than `least_m`, by their way.
+
+    No point of a frame is farther from its origin than a radius (f,).
+    """
+    for f in range(len(way)):
+        turned, moved = 0.0, 0.0
+        for r in range(3):
+            moved += way[f, r, 3] ** 2
+            for k in range(3):
+                turned += way[f, r, k] ** 2
+        bound = np.sqrt(moved) + radius_m[f] * np.sqrt(turned)
+        is_far[f] = bound * ROUNDED > least_m
+
+
+@inner
+def _farthest(way, frame, at_m, is_far):
+    """Return the largest square of how far points (s, 3) went, by frames' way.
+
+    Only those of some frames are looked at.
+    """
+    farthest = 0.0
     for i in range(len(at_m)):
         f = frame[i]
-        if f != last:
-            last, is_still = f, True
-            for r in range(3):
-                for k in range(4):
-                    is_still = is_still and way[f, r, k] == 0.0
-        if is_still:
+        if not is_far[f]:
             continue
         x, y, z = at_m[i, 0], at_m[i, 1], at_m[i, 2]
         square = 0.0
