@@ -17,11 +17,13 @@ from robot_room import (
     stowed,
 )
 from scipy.ndimage import map_coordinates
+from scipy.spatial.distance import cdist
 from test_nearby import all_near
 
 from placing import rigid
+from placing.robot import trunk as trunk_module
 from placing.robot import truth as truth_module
-from placing.robot.checker import SceneChecker, held, levers, outermost
+from placing.robot.checker import SceneChecker, held, levers, make_body, outermost
 from placing.robot.distance_field import distance_field, open_field
 from placing.robot.kernels import forward, n_steps
 from placing.robot.model import tool_pose
@@ -237,6 +239,27 @@ def test_robot_and_what_it_holds_hit_where_all_their_spheres_say():
         found.append(bool(np.any(away < reach + CONFIG.self_margin_m)) or slow_self(q))
         assert checker().hits(q, long).self == found[-1]
     assert 20 < sum(found) < 130
+
+
+@pytest.mark.parametrize("bin_rad", [trunk_module.BIN_RAD, 0.2])
+def test_what_the_first_joint_of_the_arm_keeps_apart_is_apart(monkeypatch, bin_rad):
+    monkeypatch.setattr(trunk_module, "BIN_RAD", bin_rad)
+    model, trunk = pr2(), make_body.__wrapped__(pr2(), CONFIG).trunk
+    frame, spheres = model.tree.link_frame.tolist(), model.spheres
+    q, pairs = anywhere(16, 1)[0], model.self_pairs.tolist()
+    pairs = [(i, j) for i, j in pairs if {frame[i], frame[j]} == {1, 2}]
+    places = np.arange(len(trunk.is_apart))[:, None] + np.linspace(0, 1, 5)
+    angles = trunk.start_rad + trunk.bin_rad * places
+    least_m = np.full(angles.shape, np.inf)
+    for n, q[4] in np.ndenumerate(angles):
+        centre = centres_of(q)
+        for i, j in pairs:
+            a, b = spheres.link == i, spheres.link == j
+            reach = spheres.radius_m[a][:, None] + spheres.radius_m[b]
+            away = np.min(cdist(centre[a], centre[b]) - reach)
+            least_m[n] = min(least_m[n], away)
+    assert np.all(least_m[trunk.is_apart] > CONFIG.self_margin_m)
+    assert least_m.min() < 0.0 < trunk.is_apart.mean()
 
 
 def test_no_point_moves_farther_than_the_outermost():

@@ -46,6 +46,15 @@ def test_every_link_is_where_the_physics_engine_has_it(name):
             assert np.allclose(link_poses(robot.tree, q), wanted, atol=2e-6)
 
 
+def test_joints_along_axes_turn_to_the_last_digit_as_any_joint():
+    robot, rng = model("pr2"), np.random.default_rng(2)
+    tree = robot.tree
+    assert np.all(tree.along >= 0)
+    plain = tree._replace(along=np.full_like(tree.along, -1))
+    for q in random_configurations(rng, "pr2", 200):
+        assert np.array_equal(link_poses(tree, q), link_poses(plain, q))
+
+
 def test_the_tool_is_the_tool_frame_of_the_description():
     robot, rng = model("pr2"), np.random.default_rng(1)
     with Bullet(robot) as bullet:

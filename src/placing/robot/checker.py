@@ -319,7 +319,7 @@ def make_body(model: RobotModel, config: CheckerConfig) -> Body:
     position = {number: i for i, number in enumerate(numbers.tolist())}
     pairs = [(position[i], position[j]) for i, j in model.self_pairs.tolist()]
     lever_m, frame = levers(model), tree.link_frame[numbers]
-    trunk = trunk_of(parts, frame, pairs)
+    trunk = trunk_of(parts, frame, pairs, tree, config.self_margin_m)
     arms = [(i, j) for i, j in pairs if not _is_trunk(frame[i], frame[j])]
     outer_frame, outer_m = outermost(spheres.frame, spheres.at_m)
     return Body(

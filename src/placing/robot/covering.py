@@ -69,31 +69,59 @@ def choose(points: Array, radii: Array) -> NDArray[np.int64]:
     The point that fewest spheres contain is next, and of these the sphere that contains
     most of what is left; at last the spheres go that the others make superfluous.
     """
-    n = len(points)
-    holders = np.zeros((n, n), np.bool_)
-    for p in range(n):
-        for c in range(n):
-            square = 0.0
-            for i in range(3):
-                square += (points[c, i] - points[p, i]) ** 2
-            holders[p, c] = square <= radii[c] ** 2
+    n, at, squares = len(points), points.T.copy(), radii**2
     n_holders, gain, times = np.zeros((3, n), np.int64)
     for p in range(n):
-        n_holders[p] = np.sum(holders[p])
-        gain += holders[p]
-    chosen = []
+        n_holders[p] = _count(at, squares, p, 1, gain)
+    chosen, holds = [], np.empty(n, np.bool_)
     for _ in range(n):
         hardest = _hardest(times, n_holders)
         if hardest < 0:
             break
-        best = _best(holders[hardest], gain)
+        _holders(at, squares, hardest, holds)
+        best = _best(holds, gain)
         chosen.append(best)
+        _held(at, squares, best, holds)
         for p in range(n):
-            if holders[p, best]:
+            if holds[p]:
                 if times[p] == 0:
-                    gain -= holders[p]
+                    _count(at, squares, p, -1, gain)
                 times[p] += 1
-    return _needed(holders, times, chosen)
+    return _needed(at, squares, times, chosen)
+
+
+@njit(cache=True)
+def _count(
+    at: Array, squares: Array, p: int, sign: int, gain: NDArray[np.int64]
+) -> int:
+    """Return how many spheres hold a point, and add it to what each of them gains.
+
+    Asked twice of each point: a table of all pairs would take longer to look up.
+    """
+    px, py, pz = at[0, p], at[1, p], at[2, p]
+    x, y, z, n = at[0], at[1], at[2], 0
+    for c in range(len(squares)):
+        u, v, w = x[c] - px, y[c] - py, z[c] - pz
+        is_held = int(u * u + v * v + w * w <= squares[c])
+        gain[c] += sign * is_held
+        n += is_held
+    return n
+
+
+@njit(cache=True)
+def _holders(at: Array, squares: Array, p: int, out: NDArray[np.bool_]) -> None:
+    """Write which spheres hold a point, (c,)."""
+    for c in range(len(squares)):
+        u, v, w = at[0, c] - at[0, p], at[1, c] - at[1, p], at[2, c] - at[2, p]
+        out[c] = u * u + v * v + w * w <= squares[c]
+
+
+@njit(cache=True)
+def _held(at: Array, squares: Array, c: int, out: NDArray[np.bool_]) -> None:
+    """Write which points a sphere holds, (p,)."""
+    for p in range(len(squares)):
+        u, v, w = at[0, c] - at[0, p], at[1, c] - at[1, p], at[2, c] - at[2, p]
+        out[p] = u * u + v * v + w * w <= squares[c]
 
 
 @njit(cache=True)
@@ -118,13 +146,14 @@ def _best(holds: NDArray[np.bool_], gain: NDArray[np.int64]) -> int:
 
 @njit(cache=True)
 def _needed(
-    holders: NDArray[np.bool_], times: NDArray[np.int64], chosen: list[int]
+    at: Array, squares: Array, times: NDArray[np.int64], chosen: list[int]
 ) -> NDArray[np.int64]:
     """Return the chosen spheres without those whose points others contain too."""
-    needed = []
+    needed, holds = [], np.empty(len(times), np.bool_)
     for c in chosen:
-        if np.min(times[holders[:, c]]) > 1:
-            times -= holders[:, c]
+        _held(at, squares, c, holds)
+        if np.min(times[holds]) > 1:
+            times -= holds
         else:
             needed.append(c)
     return np.array(needed)

@@ -38,6 +38,9 @@ class Tree(NamedTuple):
     """Unit axis of the joint in its own frame, (f, 3)."""
     is_turning: NDArray[np.bool_]
     """Whether the joint turns (or slides), (f,)."""
+    along: NDArray[np.int64]
+    """Along which axis of frame i - 1 that of the joint is if the frame of the joint is
+    turned as that one; else -1, (f,)."""
     link_frame: NDArray[np.int64]
     """Which frame carries each link, (l,)."""
     T_frame_link: Array
@@ -62,19 +65,46 @@ class Spheres(NamedTuple):
 
 
 @inner
-def forward(tree: Tree, q: Array, out: Array) -> None:
-    """Write the frames of configuration `q` (4 + a,) into `out` (f, 3, 4)."""
-    c, s = np.cos(q[2]), np.sin(q[2])
-    base = out[0]
-    base[:] = 0.0
-    base[0, 0], base[0, 1], base[1, 0], base[1, 1], base[2, 2] = c, -s, s, c, 1.0
-    base[0, 3], base[1, 3] = q[0], q[1]
-    for i in range(1, len(out)):
-        hang(out[i - 1], tree.T_parent_joint[i], out[i])
+def forward(tree: Tree, q: Array, out: Array, first: int = 0) -> None:
+    """Write the frames of configuration `q` (4 + a,) into `out` (f, 3, 4).
+
+    Those before `first` are there already.
+    """
+    if first == 0:
+        c, s = np.cos(q[2]), np.sin(q[2])
+        base = out[0]
+        base[:] = 0.0
+        base[0, 0], base[0, 1], base[1, 0], base[1, 1], base[2, 2] = c, -s, s, c, 1.0
+        base[0, 3], base[1, 3] = q[0], q[1]
+    for i in range(max(first, 1), len(out)):
+        T_parent_joint, value = tree.T_parent_joint[i], q[i + 2]
+        if tree.along[i] >= 0 and tree.is_turning[i]:
+            _turn_along(out[i - 1], T_parent_joint, tree.along[i], value, out[i])
+            continue
+        hang(out[i - 1], T_parent_joint, out[i])
         if tree.is_turning[i]:
-            _turn(out[i], tree.axis[i], q[i + 2])
+            _turn(out[i], tree.axis[i], value)
         else:
-            _slide(out[i], tree.axis[i], q[i + 2])
+            _slide(out[i], tree.axis[i], value)
+
+
+@inner
+def _turn_along(
+    before: Array, T_before_joint: Array, along: int, angle: float, out: Array
+) -> None:
+    """Write the frame of a joint that turns about an axis of the frame before it [rad].
+
+    To the last digit what `hang` and `_turn` write, without what they multiply by 0.
+    """
+    c, s = np.cos(angle), np.sin(angle)
+    u, w, one = (along + 1) % 3, (along + 2) % 3, c + (1.0 - c)
+    x, y, z = T_before_joint[0, 3], T_before_joint[1, 3], T_before_joint[2, 3]
+    for r in range(3):
+        at = before[r, 0] * x + before[r, 1] * y + before[r, 2] * z
+        out[r, 3] = at + before[r, 3]
+        out[r, along] = before[r, along] * one
+        out[r, u] = before[r, u] * c + before[r, w] * s
+        out[r, w] = before[r, w] * c - before[r, u] * s
 
 
 @inner
@@ -138,6 +168,11 @@ class Trunk(NamedTuple):
     """The first of these links, those of the torso after those of the base, and the
     end of the last, (l, 3)."""
     links: NDArray[np.int64]
+    start_rad: float
+    bin_rad: float
+    is_apart: NDArray[np.bool_]
+    """Whether no link of frame 2 may hit the torso at any angle of the first joint of
+    the arm in a bin; the first bin begins at `start_rad`, (n,)."""
 
 
 class Body(NamedTuple):
@@ -244,9 +279,10 @@ def are_free(case, configurations, touching, out):
         moved = 0, len(frames)
         if known >= 0:
             moved = _moved(configurations[known], configurations[i])
-        forward(tree, configurations[i], frames)
+        q = configurations[i]
+        forward(tree, q, frames)
         _place_links(body, frames, centres)
-        out[i] = not is_hit(body, around, frames, centres, touching, moved)
+        out[i] = not is_hit(body, around, q, frames, centres, touching, moved)
         if out[i]:
             known = i
 
@@ -277,7 +313,7 @@ def edge_free(case, q0, q1, touching, step_m):
         checks += 1
         forward(tree, q1 if i == 1 else q0, frames)
         _place_links(body, frames, centres)
-        if is_hit(body, around, frames, centres, touching, moved):
+        if is_hit(body, around, q, frames, centres, touching, moved):
             return False, checks
         moved = _moved(q0, q1)
     n = n_steps(tree, body.outer_frame, body.outer_m, body.lever_m, q0, q1, step_m)
@@ -287,9 +323,9 @@ def edge_free(case, q0, q1, touching, step_m):
         for i in range(stride // 2, n, stride):
             checks += 1
             _blend(q0, q1, i / n, q)
-            forward(tree, q, frames)
+            forward(tree, q, frames, moved[0])
             _place_links(body, frames, centres)
-            if is_hit(body, around, frames, centres, touching, moved):
+            if is_hit(body, around, q, frames, centres, touching, moved):
                 return False, checks
         stride //= 2
     return True, checks
@@ -345,18 +381,22 @@ def n_steps(tree, frame, at_m, lever_m, q0, q1, step_m):
     if most < 3:
         return most
     n, farthest, q = (most + 2) // 3, 0.0, np.empty(len(q0))
-    before, now = np.empty((len(tree.axis), 3, 4)), np.empty((len(tree.axis), 3, 4))
-    radius_m, is_far = np.zeros(len(before)), np.empty(len(before), np.bool_)
+    n_frames = len(tree.axis)
+    before, now = np.empty((n_frames, 3, 4)), np.empty((n_frames, 3, 4))
+    way = np.zeros((n_frames, 3, 4))
+    radius_m, is_far = np.zeros(n_frames), np.empty(n_frames, np.bool_)
     for i in range(len(at_m)):
         x, y, z = at_m[i, 0], at_m[i, 1], at_m[i, 2]
         radius_m[frame[i]] = max(radius_m[frame[i]], np.sqrt(x * x + y * y + z * z))
+    first, _ = _moved(q0, q1)
     forward(tree, q0, before)
+    now[:] = before
     for k in range(1, n + 1):
         _blend(q0, q1, k / n, q)
-        forward(tree, q, now)
-        before -= now
-        _find_far(before, radius_m, np.sqrt(farthest), is_far)
-        farthest = max(farthest, _farthest(before, frame, at_m, is_far))
+        forward(tree, q, now, first)
+        way[first:] = before[first:] - now[first:]
+        _find_far(way, radius_m, np.sqrt(farthest), is_far)
+        farthest = max(farthest, _farthest(way, frame, at_m, is_far))
         before, now = now, before
     return min(most, max(1, int(np.ceil(CURVED * n * np.sqrt(farthest) / step_m))))
 
@@ -433,7 +473,7 @@ def way(case, q, lattice, goal, root, is_lost):
         q[:3] = lattice.poses[i]
         forward(tree, q, frames)
         _place_links(body, frames, centres)
-        if is_hit(body, around, frames, centres, False, (0, 0)):
+        if is_hit(body, around, q, frames, centres, False, (0, 0)):
             continue
         if i == root:
             return _chain(back, root)
@@ -493,7 +533,7 @@ def hands_clear(case, places, wrist, out):
         forward(tree, q, frames)
         frames[last] = wrist
         _place_links(body, frames, centres)
-        out[i] = not _hits_itself(body, around, frames, centres, (last, 2))
+        out[i] = not _hits_itself(body, around, np.nan, frames, centres, (last, 2))
 
 
 @njit(cache=True)
@@ -525,11 +565,11 @@ def state_hits(case, q, touching, boxes):
         boxes[b] = True
         b = _first_box(body, around, frames, centres, touching, 0, b + 1)
     scene = _hits_scene(body, around, frames, centres, touching, 0)
-    return scene, _hits_itself(body, around, frames, centres, (0, len(frames)))
+    return scene, _hits_itself(body, around, q[4], frames, centres, (0, len(frames)))
 
 
 @inner
-def is_hit(body, around, frames, centres, touching, moved):
+def is_hit(body, around, q, frames, centres, touching, moved):
     """Return whether anything hits anything since the joints of some frames moved.
 
     `moved` are the first and the last of these; without them nothing was hit.
@@ -538,7 +578,7 @@ def is_hit(body, around, frames, centres, touching, moved):
     return (
         _hits_scene(body, around, frames, centres, touching, first)
         or _first_box(body, around, frames, centres, touching, first, 0) < n
-        or _hits_itself(body, around, frames, centres, moved)
+        or _hits_itself(body, around, q[4], frames, centres, moved)
     )
 
 
@@ -629,15 +669,18 @@ def _link_hits_box(body, around, frames, k, b, touching):
 
 
 @njit(cache=True)
-def _hits_itself(body, around, frames, centres, moved):
-    """Return whether two links with a moved joint between them come too near."""
+def _hits_itself(body, around, angle, frames, centres, moved):
+    """Return whether two links with a moved joint between them come too near.
+
+    The first joint of the arm is at an angle [rad], not a number if that is not known.
+    """
     frame, pairs, ball, margin = (
         body.frame,
         body.pairs,
         body.link_ball,
         around.self_margin_m,
     )
-    if _hits_trunk(body, frames, centres, margin, moved):
+    if _hits_trunk(body, angle, frames, centres, margin, moved):
         return True
     for n in range(len(pairs)):
         k, m = pairs[n, 0], pairs[n, 1]
@@ -660,15 +703,16 @@ def _hits_itself(body, around, frames, centres, moved):
 
 
 @inner
-def _hits_trunk(body, frames, centres, margin, moved):
+def _hits_trunk(body, angle, frames, centres, margin, moved):
     """Return whether a link of the arm comes too near to base or torso."""
     trunk, ball = body.trunk, body.link_ball
+    is_apart = _is_apart(trunk, angle)
     for k in range(len(body.frame)):
         if body.frame[k] < moved[0]:
             continue
         for f in range(min(2, moved[1])):
             t = trunk.number[k, f]
-            if t < 0:
+            if t < 0 or (is_apart and f == 1 and body.frame[k] == 2):
                 continue
             x, y, z = centres[k, 0], centres[k, 1], centres[k, 2]
             if not _is_near_trunk(trunk, t, frames, f, x, y, z, ball[k, 3] + margin):
@@ -679,22 +723,49 @@ def _hits_trunk(body, frames, centres, margin, moved):
 
 
 @inner
+def _is_apart(trunk, angle):
+    """Return whether frame 2 is surely clear of the torso at an angle of its joint."""
+    place = (angle - trunk.start_rad) / trunk.bin_rad
+    return 0.0 <= place < len(trunk.is_apart) and trunk.is_apart[int(place)]
+
+
+@inner
 def _link_hits_trunk(body, frames, centres, margin, k, f):
     """Return whether a link of the arm comes too near to base (f = 0) or torso (1)."""
     trunk, ball, g = body.trunk, body.cluster_ball, body.frame[k]
-    t, args = trunk.number[k, f], (ball, body.at_m, body.radius_m, body.cluster, frames)
+    t = trunk.number[k, f]
     for c in range(body.link[k], body.link[k + 1]):
         x, y, z = _point(frames, g, ball, c)
         if not _is_near_trunk(trunk, t, frames, f, x, y, z, ball[c, 3] + margin):
             continue
-        for n in range(trunk.first[k, f], trunk.first[k, f + 1]):
-            m = trunk.links[n]
-            reach = body.link_ball[m, 3] + ball[c, 3] + margin
-            if _square(centres, m, x, y, z) >= reach * reach:
+        for i in range(body.cluster[c], body.cluster[c + 1]):
+            x, y, z = _point(frames, g, body.at_m, i)
+            reach = body.radius_m[i] + margin
+            if not _is_near_trunk(trunk, t, frames, f, x, y, z, reach):
                 continue
-            for d in range(body.link[m], body.link[m + 1]):
-                if _hits_cluster(args, d, c, c + 1, f, g, margin):
+            for n in range(trunk.first[k, f], trunk.first[k, f + 1]):
+                m = trunk.links[n]
+                if _is_near_link(body, frames, centres, m, x, y, z, reach):
                     return True
+    return False
+
+
+@inner
+def _is_near_link(body, frames, centres, m, x, y, z, reach_m):
+    """Return whether a point is nearer than `reach_m` to a sphere of link m."""
+    reach = body.link_ball[m, 3] + reach_m
+    if _square(centres, m, x, y, z) >= reach * reach:
+        return False
+    for d in range(body.link[m], body.link[m + 1]):
+        u, v, w = _point(frames, body.frame[m], body.cluster_ball, d)
+        reach = body.cluster_ball[d, 3] + reach_m
+        if (x - u) ** 2 + (y - v) ** 2 + (z - w) ** 2 >= reach * reach:
+            continue
+        for j in range(body.cluster[d], body.cluster[d + 1]):
+            u, v, w = _point(frames, body.frame[m], body.at_m, j)
+            reach = body.radius_m[j] + reach_m
+            if (x - u) ** 2 + (y - v) ** 2 + (z - w) ** 2 < reach * reach:
+                return True
     return False
 
 

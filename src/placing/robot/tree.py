@@ -107,15 +107,24 @@ def tree_of(
     tool = np.eye(4)
     turn = Rotation.from_euler("xyz", settings.tool_rpy_deg, degrees=True)
     tool[:3, :3], tool[:3, 3] = turn.as_matrix(), settings.tool_offset_m
+    axes = np.array([[0.0, 0, 1], *(joint.axis for joint in chain)])
     tree = Tree(
         T_parent_joint=np.array(hung)[:, :3].copy(),
-        axis=np.array([[0.0, 0, 1], *(joint.axis for joint in chain)]),
+        axis=axes,
         is_turning=np.array([True] + [j.kind != "prismatic" for j in chain]),
+        along=np.array([_along(*both) for both in zip(hung, axes, strict=True)]),
         link_frame=np.array([frame_of[link] for link in links]),
         T_frame_link=np.array([T_frame[link] for link in links])[:, :3].copy(),
         T_frame_tool=(T_frame[settings.tool_frame] @ tool)[:3].copy(),
     )
     return links, tree
+
+
+def _along(T_parent_joint: Array, axis: Array) -> int:
+    """Return the axis of the parent that a joint is along, -1 if it is turned."""
+    is_turned = np.any(T_parent_joint[:3, :3] != np.eye(3))
+    along = int(np.argmax(axis))
+    return -1 if is_turned or np.any(axis != np.eye(3)[along]) else along
 
 
 def carried(

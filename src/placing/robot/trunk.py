@@ -7,22 +7,29 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
+from scipy.spatial.transform import Rotation
 
 from placing.rigid import Array
-from placing.robot.kernels import Trunk, least_distances
+from placing.robot.kernels import Tree, Trunk, least_distances
 
 CELL_M = 0.04
 """Width of the cells; only speed and memory depend on it."""
 AROUND_M = 0.3
 """Cells reach so far around the trunk; only speed and memory depend on it."""
 
+BIN_RAD = 0.05
+"""Angles of the first joint of the arm looked at together; only speed depends on it."""
+
 
 def trunk_of(
     parts: Sequence[tuple[Array, Array]],
     frame: NDArray[np.int64],
     pairs: Sequence[tuple[int, int]],
+    tree: Tree,
+    margin_m: float,
 ) -> Trunk:
-    """Return the trunk as the links of pairs may hit it.
+    """Return the trunk as the links of pairs may hit it, nearer than a margin.
 
     `parts` are centres (s, 3) and radii (s,) of the spheres of each link, in the frame
     (l,) that carries it. What is held may hit every link of the trunk.
@@ -38,6 +45,12 @@ def trunk_of(
     sets = {links: n for n, links in enumerate(sets)}
     origin, near = _distances(parts, of_trunk[0] + of_trunk[1])
     least = [np.min([near[m] for m in links], axis=0) for links in sets]
+    near_torso = [
+        (parts[k], parts[m])
+        for k, (_, links) in enumerate(hit)
+        for m in links
+        if frame[k] == 2
+    ]
     return Trunk(
         origin,
         CELL_M,
@@ -46,7 +59,28 @@ def trunk_of(
         np.array([[sets.get(tuple(links), -1) for links in row] for row in rows]),
         first,
         np.array([m for row in rows for links in row for m in links], np.int64),
+        -np.pi,
+        BIN_RAD,
+        _apart(near_torso, tree, margin_m),
     )
+
+
+def _apart(
+    pairs: Sequence[tuple[tuple[Array, Array], tuple[Array, Array]]],
+    tree: Tree,
+    margin_m: float,
+) -> NDArray[np.bool_]:
+    """Return in which bins spheres of frame 2 and of the torso cannot meet, (n,)."""
+    angles = np.arange(-np.pi, np.pi, BIN_RAD) + BIN_RAD / 2
+    turns = Rotation.from_rotvec(angles[:, None] * tree.axis[2]).as_matrix()
+    T, is_apart = tree.T_parent_joint[2], np.full(len(turns), tree.is_turning[2])
+    for (moving, radii), (still, other_radii) in pairs:
+        farthest = np.linalg.norm(moving, axis=1).max() * BIN_RAD / 2
+        reach = radii[:, None] + other_radii + margin_m + farthest
+        for i, turn in enumerate(turns):
+            at = (moving @ turn.T) @ T[:, :3].T + T[:, 3]
+            is_apart[i] &= np.all(cdist(at, still) > reach)
+    return is_apart
 
 
 def _mates(k: int, pairs: Sequence[tuple[int, int]], some: Sequence[int]) -> list[int]:
