@@ -22,7 +22,7 @@ from placing import rigid
 from placing.clouds.cloud import CloudConfig, preprocess, sample_cloud
 from placing.clouds.ply import Cloud
 from placing.dressing import meshes_of
-from placing.physics.arrangements import bodies_of, fixed_of
+from placing.physics.cutting import bodies_of, fixed_of
 from placing.physics.settling import SettleConfig
 from placing.robot.checker import CheckerConfig, Held, SceneChecker, held
 from placing.robot.distance_field import distance_field

@@ -27,7 +27,7 @@ from pybullet_planning.utils import CLIENTS
 from simulated import Simulated
 from tqdm import tqdm
 
-from placing.physics.arrangements import fixed_of
+from placing.physics.cutting import fixed_of
 from placing.robot.checker import SceneChecker
 from placing.robot.distance_field import distance_field
 from placing.robot.paths import Query, connect

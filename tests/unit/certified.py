@@ -7,8 +7,7 @@ import numpy as np
 import trimesh
 
 from placing import rigid
-from placing.physics.arrangements import bodies_of
-from placing.physics.bodies import fixed_pieces
+from placing.physics.cutting import bodies_of, fixed_pieces
 from placing.physics.settling import SettleConfig
 from placing.robot.certificates import Certificate, World
 from placing.robot.inverse import arm_solutions, follow

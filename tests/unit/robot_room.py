@@ -7,7 +7,7 @@ import numpy as np
 import trimesh
 
 from placing import rigid
-from placing.physics.bodies import fixed_pieces
+from placing.physics.cutting import fixed_pieces
 from placing.physics.settling import SettleConfig
 from placing.robot.checker import CheckerConfig, SceneChecker
 from placing.robot.distance_field import distance_field

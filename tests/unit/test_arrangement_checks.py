@@ -7,12 +7,8 @@ import pytest
 import yaml
 
 from placing import rigid
-from placing.physics.arrangements import (
-    bodies_of,
-    check_arrangements,
-    complaints_about,
-    lacks,
-)
+from placing.physics.arrangements import check_arrangements, complaints_about, lacks
+from placing.physics.cutting import bodies_of
 from placing.physics.settling import SettleConfig
 from placing.scene import Arrangement, Furniture, Layout, Placement, SceneObject
 

@@ -3,7 +3,8 @@
 import numpy as np
 import trimesh
 
-from placing.physics.bodies import body_of, fixed_pieces, shrunk_hull, spread
+from placing.physics.bodies import box_body, shrunk_hull, spread
+from placing.physics.cutting import body_of, fixed_pieces
 
 
 def block(size_m, centre_m=(0.0, 0.0, 0.0)):
@@ -30,10 +31,22 @@ def test_a_body_has_the_mass_centre_and_inertia_of_its_mesh():
     np.testing.assert_allclose(body.corners_m.min(0), [1, 2, 3] - size / 2 + 0.001)
 
 
+def shelf():
+    """Return a board around a hollow."""
+    return trimesh.boolean.difference([block((0.3, 0.8, 0.4)), block((0.4, 0.7, 0.3))])
+
+
+def test_a_box_is_the_body_of_its_mesh():
+    for size in np.random.default_rng(1).uniform(0.02, 0.5, (20, 3)):
+        cut, box = body_of(block(size), 1.3, 0.001), box_body(size, 1.3, 0.001)
+        np.testing.assert_array_equal(box.corners_m, cut.corners_m)
+        np.testing.assert_array_equal(box.pieces[0].faces, cut.pieces[0].faces)
+        np.testing.assert_allclose(box.inertia_kg_m2, cut.inertia_kg_m2)
+
+
 def test_furniture_keeps_its_hollows():
-    shelf = trimesh.boolean.difference([block((0.3, 0.8, 0.4)), block((0.4, 0.7, 0.3))])
     table_top = block((1, 1, 0.03), (0, 0, 1))
-    both = trimesh.util.concatenate([shelf, table_top])
+    both = trimesh.util.concatenate([shelf(), table_top])
     assert sorted(p.is_convex for p in fixed_pieces(both, 0.001)) == [False, True]
 
 

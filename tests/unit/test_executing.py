@@ -15,7 +15,7 @@ from certified import (
 
 from placing.artifacts.films import read_film, write_film
 from placing.errors import BadArtifact
-from placing.physics.arrangements import bodies_of
+from placing.physics.cutting import bodies_of
 from placing.rigid import difference
 from placing.robot.executing import WAIT, ExecutionConfig, execute
 from placing.robot.film import PlaybackConfig

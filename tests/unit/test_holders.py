@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from placing import rigid
-from placing.physics.bodies import body_of, fixed_pieces
+from placing.physics.cutting import body_of, fixed_pieces
 from placing.physics.settling import SettleConfig, settle
 from placing.rigid import UPSIDE_DOWN
 from placing.shapes.furniture import furniture_shape

@@ -16,7 +16,8 @@ from robot_room import (
 )
 
 from placing import rigid
-from placing.physics.bodies import Piece, body_of
+from placing.physics.bodies import Piece
+from placing.physics.cutting import body_of
 from placing.robot import truth as module
 from placing.robot.model import tool_pose
 from placing.robot.nearby import near_thing, no_things, with_thing

@@ -12,7 +12,7 @@ from test_grasps import ITEMS, SHEET
 
 from placing import rigid
 from placing.errors import BadInput
-from placing.physics.arrangements import bodies_of
+from placing.physics.cutting import bodies_of
 from placing.robot.blame import cover
 from placing.robot.errands import Errand
 from placing.robot.exact import Exact

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from shapely import Polygon
 
-from placing.physics.arrangements import bodies_of, check_arrangement, fixed_of
+from placing.physics.arrangements import check_arrangement
+from placing.physics.cutting import bodies_of, fixed_of
 from placing.physics.settling import SettleConfig
 from placing.plans.robot_candidates import Candidate
 from placing.plans.scenarios import PICKUP_TABLE, off_table

@@ -11,7 +11,7 @@ import trimesh
 import yaml
 
 from placing import rigid
-from placing.physics.bodies import body_of, fixed_pieces
+from placing.physics.cutting import body_of, fixed_pieces
 from placing.physics.settling import SettleConfig, settle
 from placing.shapes.appliances import slot_centres
 from placing.shapes.furniture import furniture_shape

@@ -6,7 +6,8 @@ import pytest
 import trimesh
 
 from placing import rigid
-from placing.physics.bodies import Piece, body_of
+from placing.physics.bodies import Piece
+from placing.physics.cutting import body_of
 from placing.physics.simulator import (
     add_body,
     add_fixed,

@@ -11,12 +11,12 @@ import yaml
 
 from placing import rigid
 from placing.clouds.cloud import CloudConfig
-from placing.physics.arrangements import bodies_of, unrest
 from placing.physics.choosing import features_of, settle_chosen
+from placing.physics.cutting import bodies_of
 from placing.physics.fixtures import INSTANCES, KINDS, fixture_of
 from placing.physics.grounds import grounds_of, pieces_of_fixtures
 from placing.physics.running import run_trials, with_outcomes
-from placing.physics.settling import SettleConfig, settle
+from placing.physics.settling import SettleConfig, settle, unrest
 from placing.physics.things import thing_of
 from placing.physics.trials import (
     MEASURED,

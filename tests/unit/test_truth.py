@@ -20,7 +20,8 @@ from robot_room import (
 )
 
 from placing import rigid
-from placing.physics.bodies import Piece, body_of
+from placing.physics.bodies import Piece
+from placing.physics.cutting import body_of
 from placing.robot.model import fixed_values, link_poses, tool_pose
 from placing.robot.truth import Truth, silence
 

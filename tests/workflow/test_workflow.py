@@ -117,7 +117,7 @@ def test_the_real_study_can_be_planned(project):
     assert jobs["learn_theta"] == 2 * (5 + 10) + 1
     assert jobs["tune_methods"] == 10
     assert jobs["sample_arrangement"] == jobs["plan_placing"] == 10
-    assert jobs["tabulate_table1"] == 2
+    assert jobs["cut_bodies"] == jobs["tabulate_table1"] == 2
     assert jobs["tabulate_table2"] == jobs["record_joint"] == jobs["picture_desk"] == 1
 
 

@@ -126,7 +126,7 @@ def scenes_of(wildcards):
 
 
 def robot_scenes(wildcards):
-    """Return the scenes of a fold in which the robot works.
+    """Return the scenes in which the robot works, of one fold where the job has one.
 
     Of every kind of scene and fold the first by name, then the second, until there
     are enough.
@@ -141,7 +141,8 @@ def robot_scenes(wildcards):
         for turn, row in enumerate(of_key)
     ]
     first = sorted(queue)[: config["robot_scenes"]["n_most"]]
-    return sorted(name for *_, name, fold in first if str(fold) == wildcards.fold)
+    asked = getattr(wildcards, "fold", None)
+    return sorted(name for *_, name, fold in first if asked in (None, str(fold)))
 
 
 def room_files(wildcards):

@@ -6,9 +6,11 @@ INPUTS
     results/{dataset}/clouds/fold{fold}/                     what the planner sees
     results/{dataset}/options/{task}/fold{fold}.parquet      what it chooses among
     results/{dataset}/arrangements/{task}/fold{fold}.parquet what it is compared with
+    resources/rooms/{scene}.yaml, the wheel of procthor      what is really there
 
 OUTPUTS
 
+    results/{dataset}/bodies/                                {scene}.npz
     results/{dataset}/plans/fold{fold}.parquet               where, in which order
     results/{dataset}/tried/fold{fold}.parquet               every placement tried
     results/{dataset}/certificates/fold{fold}/               how, to be replayed
@@ -19,16 +21,46 @@ OUTPUTS
 """
 
 
+rule cut_bodies:
+    """Cut what is in the robot's scenes into the solids that a simulator takes."""
+    input:
+        scenes=of_every_fold("results/{dataset}/scenes/fold{fold}"),
+        rooms=room_files,
+        room_schema="workflow/schemas/room.schema.yaml",
+        catalogue="config/objects.csv",
+        types="config/thor_types.csv",
+    output:
+        bodies=directory("results/{dataset}/bodies"),
+    log:
+        "results/logs/cut_bodies/{dataset}.log",
+    benchmark:
+        "results/benchmarks/cut_bodies/{dataset}.tsv"
+    params:
+        code=digest("cut_bodies"),
+        rooms=folder_of,
+        robot_scenes=robot_scenes,
+        margin_m=config["settling"]["margin_m"],
+    shell:
+        r"""
+        python workflow/scripts/cut_bodies.py \
+            --dataset {wildcards.dataset:q} \
+            --scenes {input.scenes:q} \
+            --robot-scenes {params.robot_scenes:q} \
+            --layouts {params.rooms:q} {input.room_schema:q} \
+            {input.catalogue:q} {input.types:q} \
+            --bodies {output.bodies:q} \
+            --margin-m {params.margin_m:q} \
+            2>{log:q}
+        """
+
+
 rule plan_placing:
     """Plan how the robot places the objects of a fold, and in which order."""
     input:
         scenes="results/{dataset}/scenes/fold{fold}",
         clouds="results/{dataset}/clouds/fold{fold}",
+        bodies="results/{dataset}/bodies",
         options=of_tasks("results/{dataset}/options/{task}/fold{fold}.parquet"),
-        rooms=room_files,
-        room_schema="workflow/schemas/room.schema.yaml",
-        catalogue="config/objects.csv",
-        types="config/thor_types.csv",
         robot="config/robots/pr2.yaml",
         robot_schema="workflow/schemas/robot.schema.yaml",
         grasps="config/grasps.csv",
@@ -44,7 +76,6 @@ rule plan_placing:
     params:
         code=digest("plan_placing"),
         seed=config["seed"],
-        rooms=folder_of,
         robot_scenes=robot_scenes,
         min_distance_m=config["decision"]["min_distance_m"],
         robot_placing=flags("robot_placing"),
@@ -57,8 +88,7 @@ rule plan_placing:
             --clouds {input.clouds:q} \
             --options {input.options:q} \
             --robot-scenes {params.robot_scenes:q} \
-            --layouts {params.rooms:q} {input.room_schema:q} \
-            {input.catalogue:q} {input.types:q} \
+            --bodies {input.bodies:q} \
             --robot {input.robot:q} {input.robot_schema:q} \
             --grasps {input.grasps:q} {input.grasps_schema:q} \
             --plans {output.plans:q} \

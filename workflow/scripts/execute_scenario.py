@@ -7,7 +7,7 @@ from command import run
 from placing.artifacts.certificates import read_certificates
 from placing.artifacts.films import write_film
 from placing.artifacts.formats import read_table, write_table
-from placing.physics.arrangements import bodies_of, fixed_of
+from placing.physics.cutting import bodies_of, fixed_of
 from placing.physics.settling import SettleConfig
 from placing.plans.robot_plans import PLAN_COLUMNS
 from placing.robot.executing import ExecutionConfig, execute

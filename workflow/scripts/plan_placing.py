@@ -7,6 +7,7 @@ import pandas as pd
 from tqdm import tqdm
 
 from command import run
+from placing.artifacts.bodies import read_solids
 from placing.artifacts.certificates import write_certificates
 from placing.artifacts.formats import write_table
 from placing.artifacts.options import read_options
@@ -14,7 +15,6 @@ from placing.artifacts.plans import write_plans
 from placing.artifacts.scenes import read_scene
 from placing.clouds.ply import read_ply
 from placing.errors import NoFloor
-from placing.layouts import layout_reader
 from placing.plans.robot_arranging import NOWHERE, RobotPlacingConfig
 from placing.plans.robot_plans import Planned
 from placing.plans.robot_scene import RobotConfig, placer_in, robot_of
@@ -22,7 +22,6 @@ from placing.robot.grasps import GraspSheet, read_grasps
 from placing.robot.model import RobotModel, load_robot
 from placing.robot.settings import RobotSettings, read_robot
 from placing.rooms.file import read_yaml
-from placing.scene import Layout
 
 log = logging.getLogger(__name__)
 
@@ -33,7 +32,7 @@ def main(
     clouds: Path,
     options: tuple[Path, ...],
     robot_scenes: tuple[str, ...],
-    layouts: tuple[Path, Path, Path, Path],
+    bodies: Path,
     robot: tuple[Path, Path],
     grasps: tuple[Path, Path],
     plans: Path,
@@ -52,7 +51,7 @@ def main(
         clouds: Directory of their clouds.
         options: What the robot may choose among, by task.
         robot_scenes: Scenes in which the robot works.
-        layouts: Directory and schema of rooms, catalogue, types of designers' things.
+        bodies: Directory of what is really in them, cut into solids.
         robot: Settings of the robot and their schema.
         grasps: How objects are grasped and the schema of that.
         plans: Table to write: where and in which order every object is put.
@@ -63,14 +62,13 @@ def main(
         robot_placing: How placements and their order are searched.
         settings: Sections of the configuration that a robot in a scene looks at.
     """
-    read_layout = layout_reader(dataset, *layouts)
     body, sheet = read_both(robot, grasps)
     model, every = load_robot(body), pd.concat(map(read_options, options))
     made = Planned(dataset, every, min_distance_m, robot_placing)
     del every  # it is kept by question
     for name in tqdm(sorted(robot_scenes), unit="scene", disable=None):
-        seen = scenes / f"{name}.json", clouds / f"{name}.ply"
-        add_scene(made, *seen, read_layout(name), (model, sheet, settings, seed))
+        files = scenes / f"{name}.json", clouds / f"{name}.ply", bodies / f"{name}.npz"
+        add_scene(made, *files, (model, sheet, settings, seed))
     write_plans(plans, made.plans())
     write_table(tried, made.tried())
     write_certificates(certificates, robot[0], body.urdf, body.chain, made.certificates)
@@ -81,13 +79,13 @@ def add_scene(
     made: Planned,
     scene: Path,
     cloud: Path,
-    layout: Layout,
+    bodies: Path,
     robot: tuple[RobotModel, GraspSheet, RobotConfig, int],
 ) -> None:
     """Plan the objects of a scene; nothing of it is kept but what is planned."""
-    asked = read_scene(scene)
+    asked, solids = read_scene(scene), read_solids(bodies)
     try:
-        with placer_in(asked, read_ply(cloud).points, layout, *robot) as placer:
+        with placer_in(asked, read_ply(cloud).points, solids, *robot) as placer:
             made.add(asked, robot_of(placer))
     except NoFloor as error:
         log.warning("%s", error)

@@ -15,7 +15,7 @@ from placing.artifacts.certificates import digest_of, read_certificates
 from placing.artifacts.formats import write_csv
 from placing.errors import BadArtifact
 from placing.layouts import layout_reader
-from placing.physics.arrangements import bodies_of, fixed_of
+from placing.physics.cutting import bodies_of, fixed_of
 from placing.physics.settling import SettleConfig
 from placing.robot.certificates import Certificate
 from placing.robot.replay import Verdict, judge_all

@@ -13,11 +13,11 @@ from placing.artifacts.formats import write_csv
 from placing.errors import BadInput
 from placing.physics.arrangements import (
     PlacementCheck,
-    bodies_of,
     check_arrangements,
     complaints_about,
     lacks,
 )
+from placing.physics.cutting import bodies_of
 from placing.physics.settling import SettleConfig
 from placing.rooms.reader import layout_reader
 

@@ -12,7 +12,7 @@ from tqdm import tqdm
 from command import run
 from placing.artifacts.formats import read_table, write_csv
 from placing.joint.joint import JOINT_COLUMNS
-from placing.physics.arrangements import bodies_of, fixed_of
+from placing.physics.cutting import bodies_of, fixed_of
 from placing.physics.joint_check import check_joint
 from placing.physics.settling import SettleConfig
 from placing.rooms.reader import layout_reader

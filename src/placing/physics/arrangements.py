@@ -1,23 +1,20 @@
 """Whether labelled arrangements are possible: inside, supported, apart and at rest."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 
 from shapely import MultiPoint, Polygon
 
 from placing import rigid
-from placing.dressing import WALLS, meshes_of
-from placing.object_meshes import object_mesh
-from placing.physics.bodies import Body, Piece, body_of, fixed_pieces
-from placing.physics.settling import SettleConfig, Settled, settle
+from placing.dressing import WALLS
+from placing.physics.bodies import Body, Piece
+from placing.physics.cutting import fixed_of
+from placing.physics.settling import SettleConfig, Settled, settle, unrest
 from placing.rigid import Array
-from placing.scene import Arrangement, Layout, Placement, SceneObject
+from placing.scene import Arrangement, Layout, Placement
 
 TOLERANCE_M = 0.001
 """Guards the comparison of an outline with what touches it."""
-N_BODIES = 256
-"""Bodies that are kept; those of a scene are fewer."""
 FLOOR_M = 0.01
 """What is carried by walls below this height is carried by the floor."""
 
@@ -53,28 +50,6 @@ def check_arrangements(
         for arrangement in layout.arrangements
         for check in check_arrangement(layout, arrangement, fixed, bodies, config)
     ]
-
-
-def bodies_of(objects: Iterable[SceneObject], margin_m: float) -> dict[str, Body]:
-    """Return the bodies of objects by id; the slow part, so worth doing once."""
-    return {
-        item.object_id: _body(item.shape, item.size_m, item.mass_kg, margin_m)
-        for item in objects
-    }
-
-
-@lru_cache(maxsize=N_BODIES)
-def _body(
-    shape: str, size_m: tuple[float, float, float], mass_kg: float, margin_m: float
-) -> Body:
-    """Return the body of an object; the scenes of a fold share most of theirs."""
-    return body_of(object_mesh(shape, size_m), mass_kg, margin_m)
-
-
-def fixed_of(layout: Layout, margin_m: float) -> dict[str, tuple[Piece, ...]]:
-    """Return walls and furniture in the world, by the id of the furniture."""
-    meshes = meshes_of(layout).items()
-    return {name: fixed_pieces(mesh, margin_m) for name, mesh in meshes}
 
 
 def check_arrangement(
@@ -143,23 +118,6 @@ def reason_of(
     if placement.area not in support:
         carrier = " and ".join(support) or "nothing"
         return f"not supported by {placement.area} but by {carrier}"
-    return ""
-
-
-def unrest(settled: Settled, config: SettleConfig) -> str:
-    """Return why an object does not count as staying put; empty if it does."""
-    if settled.penetration_m > config.max_penetration_m:
-        return (
-            f"penetrates {settled.penetrated} by {settled.penetration_m * 1e3:.0f} mm"
-        )
-    if settled.dropped_m > config.max_drop_m:
-        return f"fell {settled.dropped_m * 1e3:.0f} mm"
-    if settled.tilted_deg > config.max_tilted_deg:
-        return f"tilted {settled.tilted_deg:.0f} deg"
-    if settled.moved_m > config.max_moved_m:
-        return f"moved {settled.moved_m * 1e3:.0f} mm"
-    if settled.speed_m_s > config.max_speed_m_s:
-        return f"still moves at {settled.speed_m_s:.2f} m/s"
     return ""
 
 

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from placing.clouds.cloud import CloudConfig
-from placing.physics.arrangements import bodies_of
 from placing.physics.bodies import Body, Piece
+from placing.physics.cutting import bodies_of
 from placing.physics.grounds import Ground, Key, grounds_of, pieces_of_fixtures
 from placing.physics.settling import SettleConfig
 from placing.physics.things import Thing, things_of

@@ -1,22 +1,18 @@
-"""Meshes as a rigid-body simulator wants them: convex solids and, rarely, triangles.
+"""Rigid things as a simulator wants them: convex solids and, rarely, triangles.
 
-What can move is cut into few convex parts. Simulators keep a thin shell, the margin,
-around convex shapes: each is therefore shrunk by the margin first, so that shell and
-mesh have the same surface.
+Simulators keep a thin shell, the margin, around convex shapes: each is therefore shrunk
+by the margin first, so that shell and mesh have the same surface.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
-from placing.physics.convex_parts import convex_parts, hull_volume
 from placing.rigid import Array
 
-CONVEX_SHARE = 0.98
-"""A piece that fills this share of its hull counts as convex."""
 MAX_CORNERS = 96
 """Most corners of a convex piece; the time of a step grows with their number."""
 
@@ -51,36 +47,22 @@ class Body:
         return corners + self.mass_centre_m
 
 
-def fixed_pieces(mesh: trimesh.Trimesh, margin_m: float) -> tuple[Piece, ...]:
-    """Return the pieces of a mesh that stays where it is: hollow ones as triangles."""
-    return tuple(
-        shrunk_hull(piece.vertices, margin_m)
-        if is_convex(piece)
-        else Piece(np.asarray(piece.vertices), np.asarray(piece.faces), False)
-        for piece in pieces_of(mesh)
-    )
+@dataclass(frozen=True)
+class Solids:
+    """What is really in a scene."""
+
+    fixed: Mapping[str, tuple[Piece, ...]]
+    """Walls and furniture in the world, by the id of the furniture."""
+    bodies: Mapping[str, Body]
+    """Objects that can be moved, by id."""
 
 
-def body_of(mesh: trimesh.Trimesh, mass_kg: float, margin_m: float) -> Body:
-    """Return the body of a mesh, cut into convex parts where it is far from convex."""
-    whole = mesh if mesh.is_volume else mesh.convex_hull
-    centre = np.asarray(whole.center_mass)
-    inertia = np.diag(whole.moment_inertia) * mass_kg / whole.volume
-    parts = convex_parts(whole)
-    pieces = tuple(shrunk_hull(corners - centre, margin_m) for corners in parts)
-    return Body(pieces, mass_kg, centre, inertia)
-
-
-def pieces_of(mesh: trimesh.Trimesh) -> list[trimesh.Trimesh]:
-    """Return the connected pieces of a mesh."""
-    return list(mesh.split(only_watertight=False))
-
-
-def is_convex(mesh: trimesh.Trimesh) -> bool:
-    """Return whether a mesh is closed and fills its convex hull."""
-    if not mesh.is_watertight:
-        return False
-    return bool(abs(mesh.volume) >= CONVEX_SHARE * hull_volume(mesh.vertices))
+def box_body(size_m: Array, mass_kg: float, margin_m: float) -> Body:
+    """Return a box (3,) about its centre."""
+    corners = (np.indices((2, 2, 2)).reshape(3, 8).T - 0.5) * size_m
+    squares = np.square(size_m)
+    inertia = mass_kg / 12 * (squares.sum() - squares)
+    return Body((shrunk_hull(corners, margin_m),), mass_kg, np.zeros(3), inertia)
 
 
 def shrunk_hull(vertices_m: Array, margin_m: float) -> Piece:

@@ -10,11 +10,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from placing.physics.arrangements import unrest
 from placing.physics.bodies import Body, Piece
 from placing.physics.grounds import Ground, Key
 from placing.physics.running import run_trials
-from placing.physics.settling import SettleConfig, settle
+from placing.physics.settling import SettleConfig, settle, unrest
 from placing.physics.things import Thing
 from placing.physics.trials import (
     POSE,

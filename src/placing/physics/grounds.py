@@ -8,7 +8,8 @@ from numpy.random import Generator
 
 from placing.clouds.cloud import CloudConfig, preprocess, sample_cloud
 from placing.clouds.ply import Cloud
-from placing.physics.bodies import Piece, fixed_pieces
+from placing.physics.bodies import Piece
+from placing.physics.cutting import fixed_pieces
 from placing.physics.fixtures import INSTANCES, KINDS, Fixture, fixture_of
 from placing.psi.contacts import PlacingField
 from placing.scene import PlacingArea

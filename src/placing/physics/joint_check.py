@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from placing import rigid
-from placing.physics.arrangements import is_inside, supports_of, unrest
+from placing.physics.arrangements import is_inside, supports_of
 from placing.physics.bodies import Body, Piece
-from placing.physics.settling import SettleConfig, settle
+from placing.physics.settling import SettleConfig, settle, unrest
 from placing.scene import Layout, Placement
 
 

@@ -129,3 +129,20 @@ def near_pieces(
             & np.all(piece.vertices_m.min(0) <= high, axis=1)
         )
     ]
+
+
+def unrest(settled: Settled, config: SettleConfig) -> str:
+    """Return why an object does not count as staying put; empty if it does."""
+    if settled.penetration_m > config.max_penetration_m:
+        return (
+            f"penetrates {settled.penetrated} by {settled.penetration_m * 1e3:.0f} mm"
+        )
+    if settled.dropped_m > config.max_drop_m:
+        return f"fell {settled.dropped_m * 1e3:.0f} mm"
+    if settled.tilted_deg > config.max_tilted_deg:
+        return f"tilted {settled.tilted_deg:.0f} deg"
+    if settled.moved_m > config.max_moved_m:
+        return f"moved {settled.moved_m * 1e3:.0f} mm"
+    if settled.speed_m_s > config.max_speed_m_s:
+        return f"still moves at {settled.speed_m_s:.2f} m/s"
+    return ""

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from placing.physics.arrangements import bodies_of, fixed_of
+from placing.physics.bodies import Solids
 from placing.physics.settling import SettleConfig
 from placing.plans.robot_arranging import Robot
 from placing.rigid import Array
@@ -23,7 +23,7 @@ from placing.robot.planning import Motion, PlanningConfig, Refusal
 from placing.robot.putting import Placer
 from placing.robot.seeking import Seeker
 from placing.robot.truth import Truth
-from placing.scene import Layout, Scene, SceneObject
+from placing.scene import Scene, SceneObject
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def _put(
 def placer_in(
     scene: Scene,
     points: NDArray[np.floating],
-    layout: Layout,
+    solids: Solids,
     model: RobotModel,
     sheet: GraspSheet,
     config: RobotConfig,
@@ -59,16 +59,12 @@ def placer_in(
 ) -> Iterator[Placer]:
     """Give a planner that sees the points (p, 3) of a scene.
 
-    What it carries out is checked among the furniture of the layout.
+    What it carries out is checked among what is really there.
     """
     checking, planning, settling = config.checking, config.planning, config.settling
     checker = SceneChecker(model, distance_field(points, checking), checking)
     floor = Floor(checker, planning, scene.scene)
-    movable = [item for item in scene.objects if item.is_movable]
-    margin_m = settling.margin_m
-    bodies = bodies_of(movable, margin_m)
-    fixed = fixed_of(layout, margin_m)
-    with Truth(model, fixed, checking, settling) as truth:
-        exact = Exact(truth, bodies, margin_m, planning.contact_m)
+    with Truth(model, solids.fixed, checking, settling) as truth:
+        exact = Exact(truth, solids.bodies, settling.margin_m, planning.contact_m)
         seeker = Seeker(checker, floor, exact, sheet, planning, seed)
         yield Placer(seeker, exact)

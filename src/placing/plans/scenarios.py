@@ -19,6 +19,7 @@ from shapely.geometry.base import BaseGeometry
 from placing.learning.learned import Choices
 from placing.methods.answering import Asked
 from placing.methods.scene_model import SceneModel
+from placing.physics.cutting import solids_of
 from placing.plans.offering import OPTION_COLUMNS, OfferingConfig, offered_rows
 from placing.plans.robot_arranging import (
     Robot,
@@ -233,8 +234,9 @@ def plan_scenario(
     items = {item.object_id: item for item in layout.objects}
     (start,) = layout.arrangements
     starts = {p.object_id: p.T_world_object for p in start.placements}
-    args = points_m, layout, *robot, config, seed
-    with placer_in(asked.model.scene, *args) as placer:
+    scene, margin_m = asked.model.scene, config.settling.margin_m
+    args = solids_of(layout, scene.objects, margin_m), *robot, config, seed
+    with placer_in(scene, points_m, *args) as placer:
         fetching = Fetching(placer, items, starts)
         possible = possible_in(asked, layout, config.offering)
         distance_m = asked.model.settings.decision.min_distance_m

@@ -7,9 +7,8 @@ the boxes that the planner sees, which contain them.
 from collections.abc import Mapping
 
 import numpy as np
-import trimesh
 
-from placing.physics.bodies import Body, body_of
+from placing.physics.bodies import Body, box_body
 from placing.rigid import Array, from_yaw
 from placing.robot.planning import Motion
 from placing.robot.truth import Truth
@@ -98,9 +97,8 @@ class Exact:
         """Return a box as a body, the same one for the same size."""
         key = size_m.tobytes()
         if key not in self._boxes:
-            mesh = trimesh.creation.box(extents=size_m)
             mass_kg = DENSITY_KG_M3 * float(np.prod(size_m))
-            self._boxes[key] = body_of(mesh, mass_kg, self.margin_m)
+            self._boxes[key] = box_body(size_m, mass_kg, self.margin_m)
         return self._boxes[key]
 
 

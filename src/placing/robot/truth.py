@@ -16,10 +16,9 @@ import numpy as np
 import pybullet
 
 from placing import rigid
-from placing.physics.arrangements import unrest
 from placing.physics.bodies import Body, Piece
 from placing.physics.putting_down import put_down
-from placing.physics.settling import SettleConfig, settle
+from placing.physics.settling import SettleConfig, settle, unrest
 from placing.physics.simulator import (
     MAX_STEEPNESS,
     World,
