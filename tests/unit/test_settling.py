@@ -6,13 +6,14 @@ from math import pi, sqrt
 from pathlib import Path
 
 import numpy as np
+import pybullet
 import pytest
 import trimesh
 import yaml
 
 from placing import rigid
 from placing.physics.cutting import body_of, fixed_pieces
-from placing.physics.settling import SettleConfig, settle
+from placing.physics.settling import SettleConfig, settle, unrest
 from placing.shapes.appliances import slot_centres
 from placing.shapes.furniture import furniture_shape
 from placing.shapes.objects import object_shape
@@ -182,3 +183,27 @@ def test_a_longer_fall_takes_as_long_as_gravity_says():
     assert settled.speed_m_s == pytest.approx(
         sqrt(2 * 9.81 * settled.dropped_m), rel=0.03
     )
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_who_is_watched_until_it_rests_has_the_fate_of_the_whole_time(seed):
+    rng = np.random.default_rng(seed)
+    at = rng.uniform(0.35, 0.55), rng.uniform(-0.1, 0.1)
+    body, T = book(*at, TOP_M + rng.uniform(0, 0.03), rng.uniform(-3, 3))
+    placed = {"book": (body, T), "other": book(0.3, 0.0, TOP_M, 0.2)}
+    aims = {"book": T - np.array([0, 0, 0, 0, 0, 0, 0.02])}
+    whole, watched = (
+        settle(table(), placed, CONFIG, aims=aims, until=until)["book"]
+        for until in ("", "book")
+    )
+    assert bool(unrest(watched, CONFIG)) == bool(unrest(whole, CONFIG))
+    assert watched.penetration_m == whole.penetration_m
+
+
+def test_what_rests_is_watched_no_longer(monkeypatch):
+    steps, step = [], pybullet.stepSimulation
+    monkeypatch.setattr(pybullet, "stepSimulation", lambda c: steps.append(step(c)))
+    for until in ("", "book"):
+        settle(table(), {"book": book(0.1, 0.2, TOP_M)}, CONFIG, until=until)
+    whole = round(CONFIG.duration_s * CONFIG.step_rate_hz)
+    assert whole < len(steps) < 4 / 3 * whole

@@ -15,6 +15,7 @@ from placing.artifacts.plans import write_plans
 from placing.artifacts.scenes import read_scene
 from placing.clouds.ply import read_ply
 from placing.errors import NoFloor
+from placing.freed_memory import give_back_freed_memory
 from placing.plans.robot_arranging import NOWHERE, RobotPlacingConfig
 from placing.plans.robot_plans import Planned
 from placing.plans.robot_scene import RobotConfig, placer_in, robot_of
@@ -69,6 +70,7 @@ def main(
     for name in tqdm(sorted(robot_scenes), unit="scene", disable=None):
         files = scenes / f"{name}.json", clouds / f"{name}.ply", bodies / f"{name}.npz"
         add_scene(made, *files, (model, sheet, settings, seed))
+        give_back_freed_memory()
     write_plans(plans, made.plans())
     write_table(tried, made.tried())
     write_certificates(certificates, robot[0], body.urdf, body.chain, made.certificates)

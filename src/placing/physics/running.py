@@ -7,10 +7,11 @@ from typing import Any
 
 import pandas as pd
 
+from placing.freed_memory import keep_freed_memory
 from placing.physics.bodies import Body, Piece
 from placing.physics.settling import SettleConfig
 from placing.physics.trials import POSE, TRIAL_COLUMNS
-from placing.physics.watching import Watched, keep_freed_memory, watch
+from placing.physics.watching import Watched, watch
 from placing.rigid import Array
 
 

@@ -16,6 +16,7 @@ from placing import rigid
 from placing.physics.bodies import Body, Piece
 from placing.physics.putting_down import put_down
 from placing.physics.simulator import (
+    World,
     add_body,
     add_fixed,
     deepest_overlap,
@@ -25,6 +26,10 @@ from placing.physics.simulator import (
 )
 from placing.rigid import Array
 
+LOOK_S = 0.0625
+"""Simulated time from one look to the next, at what may have come to rest."""
+RESTING_M_S, RESTING_M, RESTING_DEG = 0.005, 0.001, 0.3
+"""What moves and turns less between three looks has come to rest."""
 NO_AIMS: Mapping[str, Array] = MappingProxyType({})
 
 
@@ -79,13 +84,15 @@ def settle(
     config: SettleConfig,
     reach_m: float = 0.0,
     aims: Mapping[str, Array] = NO_AIMS,
+    until: str = "",
 ) -> dict[str, Settled]:
     """Return what each body does when it is let go at its pose `T_world_body`.
 
     `fixed` holds furniture in the frame of the world; poses are those of the meshes
     the bodies come from. The lowest first, bodies are put down before: moved up or down
     by at most `reach_m` until they touch. Motion is measured from there, or from where
-    `aims` says that a body is to be.
+    `aims` says that a body is to be. The trial is over when the body called `until` has
+    come to rest, or else after its whole time.
     """
     with new_world(config.step_rate_hz, config.friction, config.margin_m) as world:
         for name, piece in near_pieces(fixed, bodies, config.near_m):
@@ -98,8 +105,8 @@ def settle(
             starts = put_down(world, starts, reach_m)
         pybullet.performCollisionDetection(world.client)
         overlaps = {i: deepest_overlap(world, i) for i in starts}
-        for _ in range(round(config.duration_s * config.step_rate_hz)):
-            pybullet.stepSimulation(world.client)
+        watched = {i: start for i, start in starts.items() if world.names[i] == until}
+        _let_pass(world, watched, config)
         return {
             world.names[i]: Settled(
                 *overlaps[i],
@@ -108,6 +115,32 @@ def settle(
             )
             for i, (body, T) in starts.items()
         }
+
+
+def _let_pass(
+    world: World, watched: Mapping[int, tuple[Body, Array]], config: SettleConfig
+) -> None:
+    """Let the time of a trial pass, until the one body rests that may be watched."""
+    looks: list[tuple[float, float, float, float]] = []
+    n_look = round(LOOK_S * config.step_rate_hz)
+    for n in range(1, round(config.duration_s * config.step_rate_hz) + 1):
+        pybullet.stepSimulation(world.client)
+        if n % n_look == 0:
+            looks += [motion(world, i, *start) for i, start in watched.items()]
+            if rests(looks[-3:]):
+                return
+
+
+def rests(looks: list[tuple[float, float, float, float]]) -> bool:
+    """Return whether three looks in a row found an object at one place."""
+    if len(looks) < 3:
+        return False
+    moved, _, turned, speed = np.array(looks).T
+    return bool(
+        speed[1:].max() < RESTING_M_S
+        and np.ptp(moved) < RESTING_M
+        and np.ptp(turned) < RESTING_DEG
+    )
 
 
 def near_pieces(

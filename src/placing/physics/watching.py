@@ -4,16 +4,14 @@ The outcome is that of `settling.settle`, which always runs its whole time: an o
 that went too far does not come back, and one that has come to rest stays there.
 """
 
-import ctypes
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
 import pybullet
 
 from placing.physics.bodies import Body, Piece
 from placing.physics.putting_down import put_down
-from placing.physics.settling import SettleConfig, near_pieces
+from placing.physics.settling import LOOK_S, SettleConfig, near_pieces, rests
 from placing.physics.simulator import (
     add_body,
     add_fixed,
@@ -22,13 +20,6 @@ from placing.physics.simulator import (
     new_world,
 )
 from placing.rigid import Array
-
-LOOK_S = 0.0625
-"""Simulated time from one look to the next."""
-RESTING_M_S, RESTING_M, RESTING_DEG = 0.005, 0.001, 0.3
-"""What moves and turns less between three looks has come to rest."""
-M_TRIM_THRESHOLD, M_MMAP_THRESHOLD, KEPT_BYTES = -1, -3, 1 << 30
-"""Parameters of `mallopt` in the C library of Linux."""
 
 
 @dataclass(frozen=True)
@@ -86,26 +77,3 @@ def went_too_far(look: tuple[float, float, float, float], config: SettleConfig) 
         or look[1] > config.max_drop_m
         or look[2] > config.max_tilted_deg
     )
-
-
-def rests(looks: list[tuple[float, float, float, float]]) -> bool:
-    """Return whether three looks in a row found an object at one place."""
-    if len(looks) < 3:
-        return False
-    moved, _, turned, speed = np.array(looks).T
-    return bool(
-        speed[1:].max() < RESTING_M_S
-        and np.ptp(moved) < RESTING_M
-        and np.ptp(turned) < RESTING_DEG
-    )
-
-
-def keep_freed_memory() -> None:
-    """Let the C library keep what it frees: a new world then takes a quarter the time.
-
-    Each world asks for tens of megabytes, which are otherwise given back page by page.
-    """
-    mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
-    if mallopt is not None:
-        mallopt(M_MMAP_THRESHOLD, KEPT_BYTES)
-        mallopt(M_TRIM_THRESHOLD, KEPT_BYTES)

@@ -292,7 +292,9 @@ class Truth:
         body, T = bodies[object_id]
         near[object_id] = body, T + np.array([0, 0, 0, 0, 0, 0, above_m])
         reach_m = 0.0 if above_m > 0 else reach_m
-        settled = settle(self._pieces, near, self._settling, reach_m, {object_id: T})
+        aims = {object_id: T}
+        args = self._pieces, near, self._settling, reach_m, aims
+        settled = settle(*args, until=object_id)
         return unrest(settled[object_id], self._settling)
 
     def _set(self, q: Array) -> None:
