@@ -9,13 +9,13 @@ Letters: k poses of the arm, a joints of the arm.
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from placing import rigid
 from placing.rigid import Array
 from placing.robot.checker import Held, SceneChecker
 from placing.robot.distance_field import open_field
 from placing.robot.grasps import facing
+from placing.robot.halton import halton
 from placing.robot.inverse import arm_solutions
 from placing.robot.model import RobotModel, tool_pose
 
@@ -91,9 +91,10 @@ class Carrying:
 def _arms(model: RobotModel) -> Array:
     """Return solutions for tools in front of the robot, shape (k, a)."""
     low_m = model.settings.torso_heights_m[0]
-    share = qmc.Halton(6, scramble=False).random(N_POSES + 1)[1:]
+    low, high = np.array(TOOL_LOW), np.array(TOOL_HIGH)
+    tools = halton(N_POSES + 1, 6)[1:] * (high - low) + low
     arms = [np.empty((0, model.n_arm))]
-    for x, y, z, *angles in qmc.scale(share, TOOL_LOW, TOOL_HIGH):
+    for x, y, z, *angles in tools:
         T_base_tool = np.concatenate([facing(*angles), (x, y, z)])
         arms.append(arm_solutions(model, T_base_tool, low_m)[:2])
     return np.vstack(arms)

@@ -8,8 +8,8 @@ points of a Halton sequence; both starts and steps are counted, never timed.
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
+from placing.robot.halton import halton
 from placing.robot.model import RobotModel
 
 Array = NDArray[np.float64]
@@ -29,7 +29,7 @@ SAME_RAD = 0.05
 def solutions(model: RobotModel, T_torso_wrist: Array, n_starts: int) -> Array:
     """Return the different solutions of n starts, (k, a) [rad]."""
     low, high = _limits(model)
-    starts = low + qmc.Halton(len(low), scramble=False).random(n_starts) * (high - low)
+    starts = low + halton(n_starts, len(low)) * (high - low)
     found = _solve(model, T_torso_wrist, starts)
     kept: list[Array] = []
     for arm in found:

@@ -11,12 +11,12 @@ Letters: b base poses, t rows of a path, a joints of the arm.
 from functools import cache
 
 import numpy as np
-from scipy.stats import qmc
 
 from placing import rigid
 from placing.rigid import Array
 from placing.robot.checker import Held, SceneChecker
 from placing.robot.driving import Floor
+from placing.robot.halton import halton
 from placing.robot.inverse import follow
 from placing.robot.model import tool_pose
 from placing.robot.planning import PlanningConfig
@@ -27,7 +27,7 @@ UP = np.array([0.0, 0.0, 1.0])
 @cache
 def _halton(n: int) -> Array:
     """Return the first points of a Halton sequence, shape (n, 3), from 0 to 1."""
-    return qmc.Halton(3, scramble=False).random(n + 1)[1:]
+    return halton(n + 1, 3)[1:]
 
 
 def standing_places(
