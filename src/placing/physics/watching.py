@@ -1,7 +1,7 @@
 """One object let go in a world of its own, watched only until its fate is clear.
 
-The outcome is that of `settling.settle` over its whole time: an object that went too far
-does not come back, and one that has come to rest stays there.
+The outcome is that of `settling.settle` over its whole time: an object that went too
+far does not come back, and one that has come to rest stays there.
 """
 
 from collections.abc import Mapping
