@@ -1,10 +1,10 @@
 """What every rules file needs: environment, sheet of scenes, flags, source files."""
 
-import ast
 import functools
 import hashlib
 import json
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -357,22 +357,34 @@ def digest(script):
 
 
 @functools.cache
+def modules_here():
+    """Return the files of this project by the names of their modules."""
+    files = {}
+    for folder in ("src", "workflow/scripts"):
+        for path in Path(folder).rglob("*.py"):
+            parts = path.relative_to(folder).with_suffix("").parts
+            name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+            files.setdefault(name, []).append(str(path))
+    return files
+
+
+IMPORT = re.compile(
+    r"^[ \t]*(?:from[ \t]+([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n]+)"
+    r"|import[ \t]+([^\n]+))",
+    re.MULTILINE,
+)
+"""Lines that import; to parse all modules takes as long as all else that is done."""
+
+
+@functools.cache
 def imports(path):
     """Return the modules of this project that a file imports, also inside functions."""
     names = set()
-    for node in ast.walk(ast.parse(Path(path).read_text())):
-        if isinstance(node, ast.Import):
-            names |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            names |= {f"{node.module}.{alias.name}" for alias in node.names}
+    for module, some, plain in IMPORT.findall(Path(path).read_text()):
+        words = [word.split()[:1] for word in (some or plain).strip("()").split(",")]
+        start = f"{module}." if module else ""
+        names |= {f"{start}{first[0]}" for first in words if first}
     # Importing `a.b.c` runs `a` and `a.b` first; a name may be a module or in one.
     parts = [name.split(".") for name in names]
-    modules = {tuple(part[:n]) for part in parts for n in range(1, len(part) + 1)}
-    stems = [
-        Path(folder, *module)
-        for module in modules
-        for folder in ("src", "workflow/scripts")
-    ]
-    files = [stem.with_suffix(".py") for stem in stems]
-    files += [stem / "__init__.py" for stem in stems]
-    return [str(file) for file in files if file.exists()]
+    modules = {".".join(part[:n]) for part in parts for n in range(1, len(part) + 1)}
+    return [file for name in modules for file in modules_here().get(name, [])]
