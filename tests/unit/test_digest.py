@@ -19,7 +19,7 @@ def rules(monkeypatch):
     monkeypatch.chdir(ROOT)
     text = Path("workflow/rules/common.smk").read_text()
     names = {"functools": functools, "hashlib": hashlib, "re": re, "Path": Path}
-    exec(text[text.index("@functools.cache\ndef digest") :], names)  # noqa: S102
+    exec(text[text.index("@functools.cache\ndef digest") :], names)
     return names
 
 
