@@ -1,5 +1,11 @@
 """Errors a user can cause: each is one line that names thing, value and expectation."""
 
+from difflib import get_close_matches
+
+MOST_LISTED = 25
+"""Names that one line holds; of more the nearest are told."""
+N_NEAREST = 5
+
 
 class PlacingError(Exception):
     """Something a user gave is wrong; the message is one complete line."""
@@ -23,4 +29,9 @@ class UnknownName(PlacingError):
 
 def unknown(what: str, name: str, known: list[str]) -> UnknownName:
     """Return the error for `name`, which is none of the `known` ones."""
-    return UnknownName(f"unknown {what} {name!r}; known are {', '.join(sorted(known))}")
+    names = sorted(known)
+    said = "known are"
+    if len(names) > MOST_LISTED:
+        said = f"of {len(names)} that are known the nearest are"
+        names = get_close_matches(name, names, N_NEAREST, cutoff=0.0)
+    return UnknownName(f"unknown {what} {name!r}; {said} {', '.join(names)}")
