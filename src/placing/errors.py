@@ -2,8 +2,8 @@
 
 from difflib import get_close_matches
 
-MOST_LISTED = 25
-"""Names that one line holds; of more the nearest are told."""
+MOST_LISTED = 60
+"""Names that are listed, as all kinds of furniture; of more the nearest are told."""
 N_NEAREST = 5
 
 
