@@ -365,3 +365,21 @@ def test_a_path_is_clear_of_boxes_where_each_of_its_configurations_is():
         found.append(among.is_path_clear(path))
         assert found[-1] is not is_hit
     assert 10 < sum(found) < 50
+
+
+def test_the_ends_of_an_edge_are_looked_at_with_their_own_angles():
+    model, trunk = pr2(), make_body(pr2(), CONFIG).trunk
+    alone = SceneChecker(model, open_field(), CONFIG)
+    places = np.arange(len(trunk.is_apart)) + 0.5
+    free, hit = [], []
+    for angle in trunk.start_rad + trunk.bin_rad * places:
+        q = anywhere(16, 1)[0]
+        q[4] = angle
+        (hit if slow_self(q) else free).append(q)
+    assert len(hit) > 5
+    turned = free[len(free) // 2].copy()
+    turned[-1] += 0.5
+    for q in hit:
+        # What is free leaves its numbers in memory.
+        assert alone.is_edge_free(free[len(free) // 2], turned)
+        assert not alone.is_edge_free(q, q)

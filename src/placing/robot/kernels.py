@@ -311,9 +311,10 @@ def edge_free(case, q0, q1, touching, step_m):
     moved = 0, len(frames)
     for i in (1, 0):  # the ends, of which only the first shows what stands still
         checks += 1
-        forward(tree, q1 if i == 1 else q0, frames)
+        end = q1 if i == 1 else q0
+        forward(tree, end, frames)
         _place_links(body, frames, centres)
-        if is_hit(body, around, q, frames, centres, touching, moved):
+        if is_hit(body, around, end, frames, centres, touching, moved):
             return False, checks
         moved = _moved(q0, q1)
     n = n_steps(tree, body.outer_frame, body.outer_m, body.lever_m, q0, q1, step_m)
